@@ -1,0 +1,171 @@
+"""Fit: the approximation with everything known about it; Candidate and Reason. Read this first after the README."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ratfit._condition import AbstractCondition
+from ratfit._parse import RatfitError, nearest
+from ratfit._problem import Problem
+from ratfit._problem_file import form_table
+
+Reason = str
+"""One sentence that says why something was rejected or not found, in words a person can act on."""
+
+STATUSES = ("unique", "family", "several", "inconsistent", "rejected", "timeout")
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A kernel condition and how a candidate keeps it.
+
+    `demand` is the number asked for. `holds` is True, False, or None when algebra and numerics could not agree;
+    `residual` is the largest |found - demanded| at 50 digits over sampled parameters, None where there is no number.
+    """
+
+    condition: AbstractCondition
+    demand: sp.Expr
+    holds: bool | None
+    residual: float | None
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A solution of the equations with all common factors cancelled: factor * numerator/denominator.
+
+    `free` holds what the conditions leave open, with its range; `reason` is empty for an accepted candidate.
+    """
+
+    expression: sp.Expr
+    free: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
+    conditions: tuple[Checked, ...] = ()
+    reason: Reason = ""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What `derive` found, or an honest no.
+
+    `status` is one of STATUSES; with "unique", "family" and "several" there is an `expression` (with several
+    accepted candidates the first of `candidates`), written in the variable, the parameters and the free names, valid
+    on the form's support. `rejected` keeps what satisfied the equations and failed as an answer; `reasons` says why
+    there is no answer. `equations` are those of the route taken, as text in the unknowns, for a person to read.
+    Call it to evaluate it: `fit(0.3, m=0.2)` takes floats, NumPy and JAX arrays.
+    """
+
+    problem: Problem
+    status: str
+    route: str
+    candidates: tuple[Candidate, ...] = ()
+    rejected: tuple[Candidate, ...] = ()
+    reasons: tuple[Reason, ...] = ()
+    equations: tuple[str, ...] = ()
+
+    @property
+    def expression(self) -> sp.Expr | None:
+        return self.candidates[0].expression if self.candidates else None
+
+    @property
+    def free(self) -> Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]]:
+        return self.candidates[0].free if self.candidates else {}
+
+    @property
+    def conditions(self) -> tuple[Checked, ...]:
+        return self.candidates[0].conditions if self.candidates else ()
+
+    @property
+    def choice(self) -> Mapping[sp.Symbol, sp.Expr]:
+        """The recorded values of free coefficients."""
+        return {s: self.problem.choice[s.name] for s in self.free if s.name in self.problem.choice}
+
+    @property
+    def chosen(self) -> sp.Expr:
+        """The expression with the recorded choices put in, on the support. Raises RatfitError when there is none."""
+        if self.expression is None:
+            raise RatfitError(f"{self.problem.name}: there is no fit ({self.status}): {'; '.join(self.reasons)}")
+        return self.expression.subs(self.choice)
+
+    @property
+    def formula(self) -> sp.Expr:
+        """The approximant on the whole domain: `chosen` on the support, the form's value outside of it elsewhere."""
+        if self.problem.form.support is None:
+            return self.chosen
+        low, high = self.problem.form.support
+        x, (left, right) = self.problem.variable, self.problem.domain
+        outside = [side for side, needed in ((x < low, low != left), (x > high, high != right)) if needed]
+        if not outside:
+            return self.chosen
+        return sp.Piecewise((self.problem.form.outside, sp.Or(*outside)), (self.chosen, True), evaluate=False)
+
+    @cached_property
+    def cost(self):
+        """Operations a sample of the best schedule found; work on parameters alone and clamps are not counted."""
+        from ratfit._schedule import schedule
+
+        return schedule(self.chosen, self.problem.variable).cost
+
+    def __call__(self, at: Any, **values: float) -> Any:
+        """The fit's value; `values` give the parameters, and free coefficients without a recorded choice, by name.
+
+        A float gives a float, a NumPy or JAX array an array of the same shape and dtype. Raises RatfitError for a
+        missing or unknown name, TypeError never.
+        """
+        from ratfit._lower import lower
+
+        symbols = sorted(self.formula.free_symbols - {self.problem.variable}, key=lambda s: s.name)
+        known = [s.name for s in symbols] + [p.name for p in self.problem.parameters]
+        for name in values:
+            if name not in known:
+                raise RatfitError(f"{self.problem.name} has no parameter {name}{nearest(name, known)}; it has {known}")
+        missing = [s.name for s in symbols if s.name not in values]
+        if missing:
+            raise RatfitError(f"{self.problem.name}: give {', '.join(missing)} by name, as in fit(x, {missing[0]}=...)")
+        jax = sys.modules.get("jax")  # a JAX array cannot come from a program that never imported JAX
+        backend = "jax" if jax is not None and isinstance(at, jax.Array) else "numpy"
+        function = lower(self.formula, [self.problem.variable, *symbols], backend)
+        if isinstance(at, (list, tuple)):
+            at = np.asarray(at)
+        return function(at, *(values[s.name] for s in symbols))
+
+    def _repr_latex_(self) -> str | None:
+        """Mathematics in a notebook: the target's symbol, and the fit."""
+        if self.expression is None:
+            return None
+        return f"$\\displaystyle {sp.latex(self.formula)}$"
+
+    def to_json_object(self) -> dict[str, Any]:
+        """The object of `derive --format json`; expressions are text in ratfit's own grammar."""
+        problem = self.problem
+        return {
+            "name": problem.name,
+            "status": self.status,
+            "target": None if problem.target is None else str(problem.target.expression),
+            "variable": str(problem.variable),
+            "domain": [str(end) for end in problem.domain],
+            "parameters": {p.name: [str(p.low), str(p.high)] for p in problem.parameters},
+            "form": form_table(problem.form),
+            "expression": None if self.expression is None else str(self.expression),
+            "candidates": [str(c.expression) for c in self.candidates],
+            "free": [{"name": str(s), "range": [str(low), str(high)]} for s, (low, high) in self.free.items()],
+            "choice": {str(s): str(v) for s, v in self.choice.items()},
+            "route": self.route,
+            "conditions": [
+                {
+                    "kind": c.condition.kind,
+                    "at": c.condition.place,
+                    "equals": str(c.demand),
+                    "holds": c.holds,
+                    "residual": c.residual,
+                }
+                for c in self.conditions
+            ],
+            "rejected": [{"expression": str(c.expression), "reason": c.reason} for c in self.rejected],
+            "cost": None if self.expression is None else self.cost.as_dict(),
+        }

@@ -1,0 +1,255 @@
+"""Generators: constants and parameters written in a basis without hidden relations.
+
+* powers of pi, of a parameter or of any other transcendental atom: powers of one root of it;
+* roots of integers: roots of primes; roots of polynomials in the parameters: roots of their irreducible factors;
+* exp, and powers with symbolic exponents: one exponential for each monomial of the exponent (with logarithms of
+  integers reduced to those of primes), independent by Lindemann and Weierstrass where the monomials are algebraic;
+* sin, cos, tan of multiples of one monomial: its cosine c, and its sine s with s**2 = 1 - c**2.
+
+What is left (erf(1), atan(2), ...) is taken for independent. That can be false, so whoever draws a conclusion from
+a rank compares it with the numerical one (`numerical_rank`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import lcm
+
+import mpmath
+import sympy as sp
+
+from ratfit._parse import RatfitError
+from ratfit._target import sample_values
+
+DIGITS = 50
+"""Decimal digits of every numerical check of the algebra."""
+
+
+def sampled(expression: sp.Expr) -> list[mpmath.mpf]:
+    """The expression at three exact places inside the ranges of its parameters, to DIGITS digits."""
+    values = sample_values(expression.free_symbols, ("1/7", "4/7", "9/11"))
+    return [numerical(expression.subs(v)) for v in values]
+
+
+def numerical(expression: sp.Expr) -> mpmath.mpf:
+    """A constant expression to DIGITS digits; one that sympy cannot tell from zero is zero."""
+    value = sp.N(expression, DIGITS, maxn=2 * DIGITS)
+    if not value.is_number or value.has(sp.nan, sp.zoo, sp.oo) or value.is_real is False:
+        raise RatfitError(f"{expression} is not a real number")
+    with mpmath.workdps(DIGITS):
+        return mpmath.mpf(sp.Float(value, DIGITS)._mpf_)
+
+
+class Generators:
+    """The generators, and how an expression is written in them.
+
+    `atoms` are transcendental: symbol -> the expression whose `degree`-th root it is. `relations` are algebraic:
+    symbol -> its monic relation. `originals` gives each its expression in the constants as they were given.
+    """
+
+    def __init__(self) -> None:
+        self._dummies: dict[sp.Expr, sp.Symbol] = {}
+        self._meaning: dict[sp.Symbol, sp.Expr] = {}
+        self._angles: dict[sp.Expr, int] = {}
+        self._degrees: dict[sp.Expr, int] = {}
+        self._roots: dict[sp.Expr, sp.Symbol] = {}
+        self._flat: dict[sp.Expr, sp.Expr] = {}
+        self.relations: dict[sp.Symbol, sp.Expr] = {}
+
+    @property
+    def atoms(self) -> list[sp.Symbol]:
+        return list(self._meaning)
+
+    @property
+    def originals(self) -> dict[sp.Symbol, sp.Expr]:
+        found = {d: e ** sp.Rational(1, self._degrees.get(d, 1)) for d, e in self._meaning.items()}
+        for base, root in self._roots.items():
+            found[root] = self.meaning(base) ** sp.Rational(1, self._degrees[base])
+        return found | {s: e for s, e in self._sines.items()}
+
+    @property
+    def _sines(self) -> dict[sp.Symbol, sp.Expr]:
+        return {d: e for e, d in self._dummies.items() if d in self.relations}
+
+    def meaning(self, flat: sp.Expr) -> sp.Expr:
+        """A flattened expression in the constants as they were given."""
+        return flat.xreplace(self._meaning | self._sines)
+
+    def _atom(self, expression: sp.Expr) -> sp.Symbol:
+        if expression not in self._dummies:
+            dummy = sp.Dummy(f"t{len(self._dummies)}", positive=True)
+            self._dummies[expression] = dummy
+            self._meaning[dummy] = expression
+        return self._dummies[expression]
+
+    def register_angles(self, expressions: Iterable[sp.Expr]) -> None:
+        """Finds, for each monomial inside a sine or cosine, the smallest part of it that all angles are multiples of."""
+        for expression in expressions:
+            for call in expression.atoms(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc):
+                for monomial, coefficient in _monomials(call.args[0]):
+                    self._angles[monomial] = lcm(self._angles.get(monomial, 1), int(coefficient.q))
+
+    def flatten(self, expression: sp.Expr) -> sp.Expr:
+        """The expression in atoms with sums, products and rational powers alone."""
+        if expression not in self._flat:
+            self._flat[expression] = self._flattened(expression)
+        return self._flat[expression]
+
+    def _flattened(self, e: sp.Expr) -> sp.Expr:
+        if e.is_Rational:
+            return e
+        if e.is_Add or e.is_Mul:
+            return e.func(*(self.flatten(a) for a in e.args))
+        if e.is_Pow and e.exp.is_Rational:
+            return self.flatten(e.base) ** e.exp
+        if isinstance(e, sp.exp) or e is sp.E or e.is_Pow:
+            return self._exponential(e)
+        if isinstance(e, (sp.sin, sp.cos)):
+            cosine, sine = self._turn(e.args[0])
+            return sine if isinstance(e, sp.sin) else cosine
+        if isinstance(e, sp.log):
+            return self._logarithm(e)
+        rewritten = _rewritten(e)
+        if rewritten != e:
+            return self.flatten(rewritten)
+        if not e.args and e.is_real is False:
+            raise RatfitError(f"{e} is not a real number")
+        return self._atom(e)
+
+    def _exponential(self, e: sp.Expr) -> sp.Expr:
+        base, exponent = (sp.E, sp.S.One) if e is sp.E else e.as_base_exp()
+        argument = exponent if base is sp.E else exponent * sp.expand_log(sp.log(base), force=bool(base.is_positive))
+        product = sp.S.One
+        for monomial, coefficient in _monomials(argument):
+            if isinstance(monomial, sp.log):
+                product *= self.flatten(monomial.args[0]) ** coefficient
+            else:
+                product *= self._atom(sp.exp(monomial)) ** coefficient
+        return product
+
+    def _logarithm(self, e: sp.Expr) -> sp.Expr:
+        argument = e.args[0]
+        if argument.is_Rational and argument > 0:
+            return sp.Add(*(k * self._atom(sp.log(p)) for p, k in sp.factorrat(argument).items()))
+        expanded = sp.expand_log(e, force=bool(argument.is_positive))
+        return self._atom(e) if isinstance(expanded, sp.log) else self.flatten(expanded)
+
+    def _turn(self, angle: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+        """Cosine and sine of an angle, by the addition theorem from those of the monomials' parts."""
+        c, s = sp.S.One, sp.S.Zero
+        for monomial, coefficient in _monomials(angle):
+            part = self._angles.setdefault(monomial, int(coefficient.q))
+            if part % coefficient.q:
+                raise RatfitError(f"{angle} has no place in the exact field of this problem")
+            turns = int(coefficient * part)
+            unit = monomial / part
+            if monomial is sp.pi:
+                c1, s1 = self._rational_turn(coefficient)
+            else:
+                cos, sin = self._atom(sp.cos(unit)), self._sine(unit)
+                c1 = sp.chebyshevt(abs(turns), cos)
+                s1 = sp.sign(turns) * sin * sp.chebyshevu(abs(turns) - 1, cos)
+            c, s = c * c1 - s * s1, s * c1 + c * s1
+        return c, s
+
+    def _sine(self, unit: sp.Expr) -> sp.Symbol:
+        key = sp.sin(unit)
+        if key not in self._dummies:
+            dummy = sp.Dummy(f"s{len(self._dummies)}", real=True)
+            self._dummies[key] = dummy
+            self.relations[dummy] = dummy**2 - 1 + self._atom(sp.cos(unit)) ** 2
+        return self._dummies[key]
+
+    def _rational_turn(self, coefficient: sp.Rational) -> tuple[sp.Expr, sp.Expr]:
+        """Cosine and sine of a rational multiple of pi, from cos(pi/N), an algebraic number."""
+        n = 2 * int(coefficient.q)
+        key = sp.cos(sp.pi / n)
+        if not isinstance(key, sp.cos):
+            return self.flatten(sp.cos(coefficient * sp.pi)), self.flatten(sp.sin(coefficient * sp.pi))
+        if key not in self._dummies:
+            dummy = sp.Dummy(f"c{n}", real=True)
+            self._dummies[key] = dummy
+            self.relations[dummy] = sp.Poly(sp.minimal_polynomial(key, dummy), dummy).monic().as_expr()
+        c = self._dummies[key]
+        k = int(coefficient * n)
+        return sp.chebyshevt(abs(k), c), sp.chebyshevt(abs(n // 2 - k), c)
+
+    def register_roots(self, expression: sp.Expr) -> None:
+        """Finds which roots occur, and of what degree, so that one generator serves all of them."""
+        for power in sorted(expression.atoms(sp.Pow), key=sp.count_ops):
+            if power.exp.is_Integer:
+                continue
+            for base, _ in self._split_base(power.base):
+                self._degrees[base] = lcm(self._degrees.get(base, 1), int(power.exp.q))
+                if base not in self._meaning and base not in self._roots:
+                    self._roots[base] = sp.Dummy(f"r{len(self._roots)}", positive=True)
+        for base, root in self._roots.items():
+            self.relations[root] = root ** self._degrees[base] - base
+
+    def _split_base(self, base: sp.Expr) -> list[tuple[sp.Expr, sp.Integer]]:
+        """A radicand as a product of atoms, primes and irreducible polynomials, all positive."""
+        if base.is_Rational:
+            numbers, factors = base, []
+        elif any(not p.exp.is_Integer for p in base.atoms(sp.Pow)):
+            numbers, factors = sp.S.One, [(base, sp.S.One)]  # a nested radical; the numerical rank guards it
+        else:
+            numerator, denominator = sp.fraction(sp.together(base))
+            (n, above), (d, below) = sp.factor_list(numerator), sp.factor_list(denominator)
+            numbers = n / d
+            factors = [(f, sp.Integer(k)) for f, k in above] + [(f, sp.Integer(-k)) for f, k in below]
+        found = []
+        for factor, k in factors:
+            sign = self._sign(factor)
+            found.append((sp.expand(sign * factor), k))
+            numbers *= sign**k
+        if numbers < 0:
+            raise RatfitError(f"the root of {self.meaning(base)} is not real")
+        return [(sp.Integer(p), sp.Integer(k)) for p, k in sp.factorrat(numbers).items() if p != 1] + found
+
+    def _sign(self, factor: sp.Expr) -> int:
+        if factor.is_positive:
+            return 1
+        signs = {sp.sign(value) for value in sampled(self.meaning(factor))}
+        if len(signs) > 1:
+            raise RatfitError(f"the sign of {self.meaning(factor)} changes with the parameters; narrow their ranges")
+        return int(signs.pop())
+
+    def rooted(self, flat: sp.Expr) -> sp.Expr:
+        """A flattened expression with every fractional power written as a whole power of a generator."""
+        if flat in self._meaning:
+            return flat ** self._degrees.get(flat, 1)
+        if flat.is_Pow and not flat.exp.is_Integer:
+            product = sp.S.One
+            for base, k in self._split_base(flat.base):
+                if base not in self._meaning and base not in self._roots:
+                    raise RatfitError(f"{self.meaning(flat)} has no place in the exact field of this problem")
+                exponent = k * flat.exp * self._degrees[base]
+                product *= (base if base in self._meaning else self._roots[base]) ** exponent
+            return product
+        if flat.is_Add or flat.is_Mul or flat.is_Pow:
+            return flat.func(*(self.rooted(a) for a in flat.args))
+        return flat
+
+
+def _monomials(argument: sp.Expr) -> list[tuple[sp.Expr, sp.Rational]]:
+    """A sum as monomials with rational coefficients."""
+    pairs = (term.as_coeff_Mul() for term in sp.Add.make_args(sp.expand(argument)))
+    return [(monomial, coefficient) for coefficient, monomial in pairs if coefficient != 0]
+
+
+def _rewritten(e: sp.Expr) -> sp.Expr:
+    """Functions that are rational in others: hyperbolic in exp, tan in sin and cos, erfc in erf, acos in asin."""
+    if isinstance(e, (sp.sinh, sp.cosh, sp.tanh, sp.coth, sp.sech, sp.csch)):
+        return e.rewrite(sp.exp)
+    if isinstance(e, (sp.tan, sp.cot, sp.sec, sp.csc)):
+        return e.rewrite(sp.cos) if isinstance(e, sp.sec) else e.rewrite(sp.sin) if isinstance(e, sp.csc) else _tangent(e)
+    if isinstance(e, sp.erfc):
+        return 1 - sp.erf(e.args[0])
+    if isinstance(e, sp.acos):
+        return sp.pi / 2 - sp.asin(e.args[0])
+    return e
+
+
+def _tangent(e: sp.Expr) -> sp.Expr:
+    angle = e.args[0]
+    return sp.sin(angle) / sp.cos(angle) if isinstance(e, sp.tan) else sp.cos(angle) / sp.sin(angle)

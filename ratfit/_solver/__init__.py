@@ -1,0 +1,7 @@
+"""Systems -> candidate coefficients: one route a file, `solve` picks."""
+
+from ratfit._solver.auto import ROUTES as ROUTES
+from ratfit._solver.auto import pick as pick
+from ratfit._solver.auto import solve as solve
+from ratfit._solver.solution import Solution as Solution
+from ratfit._solver.solution import Undecided as Undecided

@@ -1,0 +1,254 @@
+"""System: kernel conditions become equations in the unknown coefficients; what is linear is recognised."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ratfit._condition import AbstractCondition, Integral
+from ratfit._deadline import OutOfTime, time_limit
+from ratfit._form import Rational, Shape
+from ratfit._parse import RatfitError
+from ratfit._problem import Problem
+from ratfit._target import INTEGRAL_SECONDS
+
+MAX_POLE = 10
+"""Highest order of a pole of the form's factor at a node that the linear route multiplies away."""
+
+
+@dataclass(frozen=True)
+class System:
+    """The equations that a problem's conditions put on the unknowns of its form.
+
+    `demands` holds the number that each condition asks for. `linear` says that the null space of `rows(system)`
+    is all there is to find.
+    """
+
+    problem: Problem
+    shape: Shape
+    demands: tuple[sp.Expr, ...]
+    linear: bool
+
+    @property
+    def names(self) -> list[str]:
+        """Every name that the problem uses."""
+        return [s.name for s in (self.problem.variable, *self.problem.parameters, *self.shape.unknowns)]
+
+
+def equations(problem: Problem) -> System:
+    """The system of a problem. Raises RatfitError where the target does not have what a condition asks of it."""
+    taken = [s.name for s in (problem.variable, *problem.parameters)]
+    shape = problem.form.shape(problem.variable, taken)
+    demands = tuple(condition.demanded(problem.target) for condition in problem.conditions)
+    system = System(problem, shape, demands, linear=False)
+    return System(problem, shape, demands, linear=_is_linear(system))
+
+
+def columns(shape: Shape) -> tuple[list[tuple[sp.Expr, sp.Expr]], bool]:
+    """Numerator and denominator of each unknown, when both are sums of unknowns times functions of the variable.
+
+    A part without unknowns is a last column, the fixed 1: then the second result is True.
+    """
+    nothing = dict.fromkeys(shape.unknowns, 0)
+    pairs = [(sp.diff(shape.numerator, u), sp.diff(shape.denominator, u)) for u in shape.unknowns]
+    fixed = (shape.numerator.subs(nothing), shape.denominator.subs(nothing))
+    has_fixed = any(part != 0 for part in fixed)
+    return pairs + ([fixed] if has_fixed else []), has_fixed
+
+
+def _is_linear(system: System) -> bool:
+    shape = system.shape
+    if shape.power is not None:
+        return False
+    pairs, _ = columns(shape)
+    if any(part.has(*shape.unknowns) or part.has(sp.nan, sp.zoo) for pair in pairs for part in pair):
+        return False
+    if _constant_denominator(system):
+        return True
+    problem = system.problem
+    if any(isinstance(condition, Integral) for condition in problem.conditions):
+        return False
+    return all(set(range(c.order)) <= _known_orders(problem, c.at) for c in problem.conditions)  # type: ignore[attr-defined]
+
+
+def _constant_denominator(system: System) -> bool:
+    return not any(below.has(system.problem.variable) for _, below in columns(system.shape)[0])
+
+
+def _known_orders(problem: Problem, at: sp.Expr) -> set[int]:
+    """The orders of derivative known at a place: those asked for there, and those that parity gives at 0."""
+    asked = {c.order for c in problem.conditions if not isinstance(c, Integral) and same(c.at, at)}  # type: ignore[attr-defined]
+    return asked | {order for order in range(max(asked, default=0)) if _vanishes_by_parity(problem, at, order)}
+
+
+def _vanishes_by_parity(problem: Problem, at: sp.Expr, order: int) -> bool:
+    form = problem.form
+    if not isinstance(form, Rational) or form.parity is None or form.of is not None or form.factor != 1 or at != 0:
+        return False
+    return order % 2 == (form.parity == "even") and 0 in form.exponents()[1]
+
+
+def same(a: sp.Expr, b: sp.Expr) -> bool:
+    """Whether two places are the same; a difference that does not expand to zero counts as one."""
+    return a == b or sp.expand(a - b) == 0
+
+
+def rows(system: System) -> list[tuple[int, list[sp.Expr]]]:
+    """The linear route's equations: (number of the condition, coefficients of the columns), each row to vanish.
+
+    At a node the rows are the Taylor coefficients of factor*P - f*Q: linear, where the quotient's are not. With a
+    denominator that is constant in the variable every condition is linear as it stands.
+    """
+    pairs, _ = columns(system.shape)
+    plain = _constant_denominator(system)
+    found: list[tuple[int, list[sp.Expr]]] = []
+    for number, (condition, demand) in enumerate(zip(system.problem.conditions, system.demands, strict=True)):
+        if isinstance(condition, Integral):
+            found.append((number, _integral_row(system, condition, demand, pairs)))
+        elif plain:
+            found.append((number, _plain_row(system, condition, demand, pairs)))
+        else:
+            found += [(number, row) for row in _hermite_rows(system, condition, demand, pairs)]
+    return found
+
+
+def _plain_row(system: System, condition, demand: sp.Expr, pairs: list[tuple[sp.Expr, sp.Expr]]) -> list[sp.Expr]:
+    x, factor = system.problem.variable, system.shape.factor
+    weight = sp.factorial(condition.order)
+    return [
+        weight * taylor(factor * above, x, condition.at, condition.order)[-1] - demand * below for above, below in pairs
+    ]
+
+
+def _integral_row(
+    system: System, condition: Integral, demand: sp.Expr, pairs: list[tuple[sp.Expr, sp.Expr]]
+) -> list[sp.Expr]:
+    problem = system.problem
+    inside, rest = integral_parts(problem, condition)
+    return [
+        _integrated(condition.weight * system.shape.factor * above, problem.variable, inside) - (demand - rest) * below
+        for above, below in pairs
+    ]
+
+
+def integral_parts(problem: Problem, condition: Integral) -> tuple[tuple[sp.Expr, sp.Expr], sp.Expr]:
+    """The range of an integral condition that lies on the fit's support, and what the value outside it adds."""
+    low, high = condition.range(problem.domain)
+    if problem.form.support is None:
+        return (low, high), sp.S.Zero
+    left, right = problem.form.support
+    inside = (sp.Max(low, left), sp.Min(high, right))
+    outside = condition.weight * problem.form.outside
+    x = problem.variable
+    return inside, _integrated(outside, x, (low, inside[0])) + _integrated(outside, x, (inside[1], high))
+
+
+def _integrated(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
+    if integrand == 0:
+        return sp.S.Zero
+    try:
+        with time_limit(INTEGRAL_SECONDS):
+            value = sp.integrate(sp.expand(integrand), (x, *over))
+    except OutOfTime:
+        value = sp.S.NaN
+    if value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo):
+        raise RatfitError(f"the integral of {integrand} over [{over[0]}, {over[1]}] has no closed form; choose another weight")
+    return value
+
+
+def _hermite_rows(
+    system: System, condition, demand: sp.Expr, pairs: list[tuple[sp.Expr, sp.Expr]]
+) -> list[list[sp.Expr]]:
+    x, at, order = system.problem.variable, condition.at, condition.order
+    data = [_known_derivative(system, condition, k) / sp.factorial(k) for k in range(order)]
+    data.append(demand / sp.factorial(order))
+    pole, factor = _factor_series(system.shape.factor, x, at, order)
+    tops = [range(order, order + 1), range(order + pole + 1)][bool(pole) and order == 0]
+    found = []
+    for k in [order + pole] if order else tops:
+        row = []
+        for above, below in pairs:
+            p, q = taylor(above, x, at, k), taylor(below, x, at, k)
+            numerator = sum((factor[j] * p[k - j] for j in range(min(k, len(factor) - 1) + 1)), sp.S.Zero)
+            denominator = sum((data[j] * q[k - pole - j] for j in range(min(k - pole, order) + 1)), sp.S.Zero)
+            row.append(sp.expand(numerator - denominator))
+        found.append(row)
+    return found
+
+
+def _known_derivative(system: System, condition, order: int) -> sp.Expr:
+    """The derivative of a lower order that another condition at the same node asks for, or parity's zero."""
+    for other, demand in zip(system.problem.conditions, system.demands, strict=True):
+        if not isinstance(other, Integral) and other.order == order and same(other.at, condition.at):  # type: ignore[attr-defined]
+            return demand
+    return sp.S.Zero
+
+
+def _factor_series(factor: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> tuple[int, list[sp.Expr]]:
+    """The order of the factor's pole at a node, and the Taylor coefficients of what is left when it is cleared."""
+    if factor == 1:
+        return 0, [sp.S.One]
+    for pole in range(MAX_POLE + 1):
+        try:
+            return pole, taylor(sp.together(factor * (x - at) ** pole), x, at, order + pole)
+        except RatfitError:
+            continue
+    raise RatfitError(f"form: the factor {factor} has no power series at {x} = {at}; state no condition there")
+
+
+def taylor(expression: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> list[sp.Expr]:
+    """Taylor coefficients 0 to `order`; RatfitError where one is not finite."""
+    if expression.is_polynomial(x):
+        step = sp.Dummy("step")
+        powers = sp.Poly(expression.subs(x, at + step), step).all_coeffs()[::-1] if expression.has(x) else [expression]
+        return (powers + [sp.S.Zero] * (order + 1))[: order + 1]
+    found = []
+    for k in range(order + 1):
+        value = expression.subs(x, at) / sp.factorial(k)
+        if value.has(sp.nan, sp.zoo, sp.oo):
+            raise RatfitError(f"{expression} has no power series at {x} = {at}")
+        found.append(value)
+        expression = sp.diff(expression, x)
+    return found
+
+
+def polynomial_equations(system: System) -> list[sp.Expr]:
+    """The cleared equations of the polynomial route, one for each condition, as a paper would print them.
+
+    Clearing the denominators adds roots at which numerator and denominator vanish together: verifying removes them.
+    """
+    return [
+        sp.fraction(sp.together(_residual(system, condition, demand)))[0]
+        for condition, demand in zip(system.problem.conditions, system.demands, strict=True)
+    ]
+
+
+def _residual(system: System, condition: AbstractCondition, demand: sp.Expr) -> sp.Expr:
+    x = system.problem.variable
+    if isinstance(condition, Integral):
+        inside, rest = integral_parts(system.problem, condition)
+        primitive = _primitive(condition.weight * system.shape.factor * system.shape.numerator, system.shape, x)
+        return primitive.subs(x, inside[1]) - primitive.subs(x, inside[0]) + rest - demand
+    value = sp.diff(system.shape.expression, x, condition.order).subs(x, condition.at)  # type: ignore[attr-defined]
+    if value.has(sp.nan, sp.zoo):
+        raise RatfitError(f"the form has no value at {x} = {condition.place}; move the condition or change the factor")
+    return value - demand
+
+
+def _primitive(numerator: sp.Expr, shape: Shape, x: sp.Symbol) -> sp.Expr:
+    """A primitive in closed form: of a polynomial, or of u'/u**p with p >= 2."""
+    if not shape.denominator.has(x):
+        polynomial = sp.expand(sp.cancel(numerator))
+        if polynomial.is_polynomial(x):
+            return sp.integrate(polynomial, x) / shape.denominator
+    constant, dependent = shape.denominator.as_independent(x, as_Add=False)
+    base, exponent = dependent.as_base_exp()
+    if exponent.is_Integer and exponent >= 2:
+        ratio = sp.cancel(numerator / sp.diff(base, x))
+        if not ratio.has(x):
+            return ratio * base ** (1 - exponent) / (constant * (1 - exponent))
+    raise RatfitError(
+        "form: the integral of this form is not of the kinds u'/u**p (p >= 2) and polynomial; "
+        "write the expression so, as in a*t/(b*t**2 + c)**2"
+    )

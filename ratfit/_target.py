@@ -1,0 +1,216 @@
+"""Target: the exact formula, its variable and its domain; parameters and their ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+import mpmath
+import sympy as sp
+
+from ratfit._deadline import OutOfTime, time_limit
+from ratfit._parse import RatfitError, check_name, parse_expression
+
+Exact = sp.Expr | int | float | Fraction | str
+
+INTEGRAL_SECONDS = 5.0
+"""How long sympy may look for the closed form of an integral of the target before the person is asked to state it."""
+
+_KINKED = (sp.Abs, sp.Min, sp.Max, sp.sign, sp.floor, sp.ceiling, sp.Heaviside, sp.Piecewise)
+
+
+def exact(value: Exact, what: str = "value") -> sp.Expr:
+    """Reads a number or an expression exactly: text by the closed grammar, the float 0.1 as 1/10.
+
+    Raises RatfitError for what is neither.
+    """
+    if isinstance(value, sp.Expr):
+        return value
+    if isinstance(value, str):
+        return parse_expression(value, {}, what)
+    if isinstance(value, bool) or not isinstance(value, (int, float, Fraction)):
+        raise RatfitError(f"{what}: {value!r} is not a number, a text or a sympy expression")
+    if isinstance(value, float):
+        return parse_expression(repr(value), {}, what)
+    return sp.Rational(value)
+
+
+class Parameter(sp.Symbol):
+    """A real symbol that stays in the answer, with the closed range [low, high] that its values come from."""
+
+    __slots__ = ("high", "low")
+    low: sp.Expr
+    high: sp.Expr
+
+    def __new__(cls, name: str, low: sp.Expr, high: sp.Expr) -> Parameter:
+        symbol = sp.Symbol.__xnew__(cls, name, real=True, **_sign(low, high))
+        symbol.low, symbol.high = low, high
+        return symbol
+
+    def __getnewargs_ex__(self):
+        return (self.name, self.low, self.high), {}
+
+    def __getstate__(self):
+        return None
+
+    def _hashable_content(self):
+        # Two parameters of one name and different ranges are different symbols, also in sympy's caches.
+        return sp.Symbol._hashable_content(self) + (self.low, self.high)
+
+
+def _sign(low: sp.Expr, high: sp.Expr) -> dict[str, bool]:
+    if low > 0:
+        return {"positive": True}
+    if low == 0:
+        return {"nonnegative": True}
+    if high < 0:
+        return {"negative": True}
+    return {"nonpositive": True} if high == 0 else {}
+
+
+def parameter(name: str, low: Exact, high: Exact) -> Parameter:
+    """A parameter by name with its range, as in `rf.parameter("m", "1/100", "1/2")`.
+
+    Raises RatfitError for a reserved name, a range that is not made of numbers, is empty or is reversed.
+    """
+    check_name(name, "parameter")
+    ends = [exact(low, f"parameter {name}, low"), exact(high, f"parameter {name}, high")]
+    if any(end.free_symbols for end in ends):
+        raise RatfitError(f"parameter {name}: the range [{ends[0]}, {ends[1]}] must be made of numbers")
+    if not ends[0] < ends[1]:
+        raise RatfitError(f"parameter {name}: the range [{ends[0]}, {ends[1]}] is empty; write [low, high], low < high")
+    return Parameter(name, *ends)
+
+
+@dataclass(frozen=True)
+class Target:
+    """The exact function `expression` of `variable` on the closed `domain` (low, high).
+
+    Arguments: `expression` and the two ends are sympy expressions, numbers or text without names; the ends may
+    contain parameters. Raises RatfitError for an empty or reversed domain.
+    """
+
+    expression: sp.Expr
+    variable: sp.Symbol
+    domain: tuple[sp.Expr, sp.Expr]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "expression", exact(self.expression, "target"))
+        object.__setattr__(self, "domain", check_domain(self.domain))
+
+    def derivative(self, at: sp.Expr, order: int) -> sp.Expr:
+        """The derivative of that order at a place, the one-sided limit from inside the domain where it needs one.
+
+        Raises RatfitError where it is infinite, does not exist, or is not found.
+        """
+        low, high = self.domain
+        sides = [-1] if at == high else [1] if at == low else [1, -1]
+        if len(sides) == 2 and not self.expression.has(*_KINKED):
+            value = _substituted(self.expression, self.variable, at, 1, order)
+            if value is not None:
+                return value
+        values = [_one_sided(self.expression, self.variable, at, side, order) for side in sides]
+        if len(values) == 2 and sp.simplify(values[0] - values[1]) != 0:
+            raise RatfitError(
+                f"the target's derivative of order {order} at {self.variable} = {at} is {values[1]} from the left "
+                f"and {values[0]} from the right; state it with equals"
+            )
+        return values[0]
+
+    def integral(self, weight: sp.Expr, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
+        """The integral of weight times the target; raises RatfitError when no closed form is found in time."""
+        advice = "; state its value with equals"
+        try:
+            with time_limit(INTEGRAL_SECONDS):
+                value = sp.integrate(weight * self.expression, (self.variable, *over))
+        except OutOfTime:
+            raise RatfitError(f"no closed form of the target's integral within {INTEGRAL_SECONDS:g} s{advice}") from None
+        if not value.is_finite and (value.is_infinite or value.has(sp.nan, sp.zoo, sp.oo)):
+            raise RatfitError("the target's integral diverges; choose a weight or range for which it is finite")
+        if value.has(sp.Integral, sp.Piecewise):
+            raise RatfitError(f"no closed form of the target's integral{advice}")
+        return value
+
+
+def check_domain(domain: tuple[Exact, Exact]) -> tuple[sp.Expr, sp.Expr]:
+    """The two ends as expressions; raises RatfitError unless low < high for every value of the parameters tried."""
+    if not isinstance(domain, (tuple, list)) or len(domain) != 2:
+        raise RatfitError(f"domain: two ends are needed, low and high, not {domain!r}")
+    low, high = exact(domain[0], "domain, low"), exact(domain[1], "domain, high")
+    for values in sample_values(low.free_symbols | high.free_symbols):
+        if not low.subs(values) < high.subs(values):
+            raise RatfitError(f"domain: [{low}, {high}] is empty or reversed{at_values(values)}; low must be < high")
+    return low, high
+
+
+def sample_values(symbols: set[sp.Symbol], fractions: tuple[str, ...] = ("0", "3/7", "1")) -> list[dict]:
+    """Exact values for the parameters among `symbols`, at the given fractions of their ranges.
+
+    Different parameters are given different fractions (rotated), so that no accidental equality hides a mistake.
+    Symbols that are no parameters (unknowns, free coefficients) get small unrelated rationals. An infinite end is
+    replaced by a finite one. Always at least one (perhaps empty) mapping.
+    """
+    ordered = sorted(symbols, key=lambda s: s.name)
+    if not ordered:
+        return [{}]
+    shares = [sp.Rational(f) for f in fractions]
+    return [
+        {s: _value_at(s, shares[(i + j) % len(shares)], j) for j, s in enumerate(ordered)} for i in range(len(shares))
+    ]
+
+
+def _value_at(symbol: sp.Symbol, share: sp.Rational, place: int) -> sp.Expr:
+    if not isinstance(symbol, Parameter):
+        return share + sp.Rational(7 + 4 * place, 5 + 2 * place)
+    low, high = symbol.low, symbol.high
+    if low == -sp.oo:
+        low = high - 10 if high != sp.oo else sp.Integer(-5)
+    if high == sp.oo:
+        high = low + 10
+    return low + share * (high - low)
+
+
+def at_values(values: Mapping[sp.Symbol, sp.Expr]) -> str:
+    """The words " at m = 1/100" for a message, or nothing where there is no parameter."""
+    return " at " + ", ".join(f"{name} = {value}" for name, value in values.items()) if values else ""
+
+
+def _towards(expression: sp.Expr, variable: sp.Symbol, at: sp.Expr, side: int) -> tuple[sp.Expr, sp.Symbol]:
+    """The expression as a function of the distance from `at`, a positive symbol: sqrt(distance**2) is the distance."""
+    distance = sp.Dummy("distance", positive=True)
+    return expression.subs(variable, sp.expand(at + side * distance)), distance
+
+
+def _substituted(expression: sp.Expr, variable: sp.Symbol, at: sp.Expr, side: int, order: int) -> sp.Expr | None:
+    moved, distance = _towards(expression, variable, at, side)
+    value = sp.diff(moved, distance, order).subs(distance, 0) * side**order
+    return None if value.has(sp.nan, sp.zoo, sp.oo, sp.AccumBounds) else value
+
+
+def _one_sided(expression: sp.Expr, variable: sp.Symbol, at: sp.Expr, side: int, order: int) -> sp.Expr:
+    value = _substituted(expression, variable, at, side, order)
+    if value is not None:
+        return value
+    moved, distance = _towards(expression, variable, at, side)
+    derivative = sp.diff(moved, distance, order) * side**order
+    where = f"the target's derivative of order {order}" if order else "the target's value"
+    try:
+        value = sp.limit(derivative, distance, 0, "+")
+    except (NotImplementedError, ValueError, RecursionError):
+        raise RatfitError(f"{where} at {variable} = {at} is not found; state it with equals") from None
+    if value.is_infinite or value.has(sp.nan, sp.zoo, sp.oo, sp.AccumBounds, sp.Limit):
+        raise RatfitError(f"{where} at {variable} = {at} is not finite; state another condition there")
+    _check_limit(derivative, distance, value, f"{where} at {variable} = {at}")
+    return value
+
+
+def _check_limit(derivative: sp.Expr, distance: sp.Symbol, value: sp.Expr, where: str) -> None:
+    """sympy's limits have been wrong before: the function a little way inside must lie close to what it found."""
+    for values in sample_values(value.free_symbols | derivative.free_symbols - {distance}, ("2/7",)):
+        near, far = (
+            sp.N(derivative.subs(values).subs(distance, step), 30, maxn=2000) for step in (sp.Rational(1, 10**12), sp.Rational(1, 10**6))
+        )
+        claimed = sp.N(value.subs(values), 30)
+        if not (near.is_number and abs(near - claimed) <= mpmath.mpf("1e-3") * (1 + abs(claimed)) + abs(far - claimed)):
+            raise RatfitError(f"{where}: the limit {value} is not confirmed numerically{at_values(values)}; use equals")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from itertools import combinations
 from pathlib import Path
 
+import sympy as sp
+
 from ratfit._deadline import OutOfTime, time_limit
 from ratfit._field import is_zero
 from ratfit._fit import Candidate, Fit
@@ -87,7 +89,16 @@ def _assembled(problem: Problem, route: str, candidates: list[Candidate], shown:
 
 
 def _shown_equations(system: System, route: str) -> tuple[str, ...]:
-    return tuple(f"{e} = 0" for e in polynomial_equations(system)) if route == "polynomial" else ()
+    """The polynomial system as a paper prints it: with a free scale, the leading numerator coefficient is 1."""
+    if route != "polynomial":
+        return ()
+    lead = {u: 1 for u in _leading(system)}
+    return tuple(f"{e.subs(lead)} = 0" for e in polynomial_equations(system))
+
+
+def _leading(system: System) -> tuple[sp.Symbol, ...]:
+    unknowns = [u for u in system.shape.unknowns if system.shape.numerator.has(u)]
+    return (unknowns[-1],) if system.shape.homogeneous else ()
 
 
 def _check_choice(fit: Fit) -> None:

@@ -424,13 +424,13 @@ def _call(name: str, arguments: list[sp.Expr], size: int) -> sp.Expr:
         return _extreme("Min", [_extreme("Max", arguments[:2], size), arguments[2]], size)
     if name in ("Min", "Max"):
         return _extreme(name, arguments, size)
+    if name == "exp":
+        _bound_exponential(arguments[0])
     if not all(argument.is_number for argument in arguments):
-        if name == "exp":
-            _bound_exponential(arguments[0])
         return _applied(name, arguments, size)
     if name in _DECIDED:
         return _decided(name, arguments[0])
-    value = _evaluated(name, arguments)
+    _evaluated(name, arguments)
     if name == "loggamma" and arguments[0].is_Rational and arguments[0] > 170:
         return sp.loggamma(*arguments, evaluate=False)
     return _applied(name, arguments, size)

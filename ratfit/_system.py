@@ -11,7 +11,7 @@ from ratfit._deadline import OutOfTime, time_limit
 from ratfit._form import Rational, Shape
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
-from ratfit._target import INTEGRAL_SECONDS
+from ratfit._target import INTEGRAL_SECONDS, sample_values
 
 MAX_POLE = 10
 """Highest order of a pole of the form's factor at a node that the linear route multiplies away."""
@@ -138,10 +138,20 @@ def integral_parts(problem: Problem, condition: Integral) -> tuple[tuple[sp.Expr
     if problem.form.support is None:
         return (low, high), sp.S.Zero
     left, right = problem.form.support
-    inside = (sp.Max(low, left), sp.Min(high, right))
+    inside = (_ordered(low, left)[1], _ordered(high, right)[0])
     outside = condition.weight * problem.form.outside
     x = problem.variable
     return inside, _integrated(outside, x, (low, inside[0])) + _integrated(outside, x, (inside[1], high))
+
+
+def _ordered(a: sp.Expr, b: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """Two ends of ranges, the smaller first, for all values of the parameters tried."""
+    differences = [(a - b).subs(values) for values in sample_values((a - b).free_symbols)]
+    if all(d <= 0 for d in differences):
+        return a, b
+    if all(d >= 0 for d in differences):
+        return b, a
+    raise RatfitError(f"{a} and {b} change places within the ranges of the parameters; narrow them")
 
 
 def _integrated(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
@@ -219,7 +229,7 @@ def polynomial_equations(system: System) -> list[sp.Expr]:
     Clearing the denominators adds roots at which numerator and denominator vanish together: verifying removes them.
     """
     return [
-        sp.fraction(sp.together(_residual(system, condition, demand)))[0]
+        sp.fraction(sp.cancel(_residual(system, condition, demand)))[0]
         for condition, demand in zip(system.problem.conditions, system.demands, strict=True)
     ]
 
@@ -228,7 +238,7 @@ def _residual(system: System, condition: AbstractCondition, demand: sp.Expr) -> 
     x = system.problem.variable
     if isinstance(condition, Integral):
         inside, rest = integral_parts(system.problem, condition)
-        primitive = _primitive(condition.weight * system.shape.factor * system.shape.numerator, system.shape, x)
+        primitive = primitive_of(condition.weight * system.shape.factor * system.shape.numerator, system.shape.denominator, x)
         return primitive.subs(x, inside[1]) - primitive.subs(x, inside[0]) + rest - demand
     value = sp.diff(system.shape.expression, x, condition.order).subs(x, condition.at)  # type: ignore[attr-defined]
     if value.has(sp.nan, sp.zoo):
@@ -236,13 +246,16 @@ def _residual(system: System, condition: AbstractCondition, demand: sp.Expr) -> 
     return value - demand
 
 
-def _primitive(numerator: sp.Expr, shape: Shape, x: sp.Symbol) -> sp.Expr:
-    """A primitive in closed form: of a polynomial, or of u'/u**p with p >= 2."""
-    if not shape.denominator.has(x):
+def primitive_of(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol) -> sp.Expr:
+    """A primitive of numerator/denominator in closed form: of a polynomial, or of u'/u**p with p >= 2.
+
+    Raises RatfitError for what is of neither kind.
+    """
+    if not denominator.has(x):
         polynomial = sp.expand(sp.cancel(numerator))
         if polynomial.is_polynomial(x):
-            return sp.integrate(polynomial, x) / shape.denominator
-    constant, dependent = shape.denominator.as_independent(x, as_Add=False)
+            return sp.integrate(polynomial, x) / denominator
+    constant, dependent = denominator.as_independent(x, as_Add=False)
     base, exponent = dependent.as_base_exp()
     if exponent.is_Integer and exponent >= 2:
         ratio = sp.cancel(numerator / sp.diff(base, x))

@@ -14,8 +14,8 @@ from ratfit._fit import Candidate, Checked
 from ratfit._generators import DIGITS
 from ratfit._parse import RatfitError
 from ratfit._solver import Solution
-from ratfit._system import System, integral_parts, taylor
-from ratfit._target import at_values, sample_values
+from ratfit._system import System, integral_parts, primitive_of, taylor
+from ratfit._target import Parameter, at_values, sample_values
 
 TOLERANCE = mpmath.mpf("1e-30")
 """A residual at 50 digits below this, relative to the size of the demand, counts as zero."""
@@ -37,7 +37,7 @@ def verify(system: System, solution: Solution) -> Candidate:
     numerator, denominator, common = reduced(solution.numerator, solution.denominator, x)
     if denominator == 0:
         return Candidate(sp.nan, reason="the denominator vanishes identically")
-    expression = presentable(shape.factor, numerator, denominator)
+    expression = presentable(shape.factor, numerator, denominator, x, _middle(system))
     free = {s: r for s, r in solution.free.items() if s in expression.free_symbols}
     checked = tuple(
         _check(system, condition, demand, numerator, denominator, expression)
@@ -47,9 +47,52 @@ def verify(system: System, solution: Solution) -> Candidate:
     return Candidate(expression, free, checked, reason)
 
 
-def presentable(factor: sp.Expr, numerator: sp.Expr, denominator: sp.Expr) -> sp.Expr:
-    """The fraction as it is shown: integers and signs cleared between numerator and denominator, not expanded."""
-    return factor * numerator / denominator
+def presentable(factor: sp.Expr, numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol, inside: sp.Expr) -> sp.Expr:
+    """The fraction as it is shown: each sum without common constants, positive in the middle of the support.
+
+    The constants taken out are gathered into one; inner variables stay unexpanded.
+    """
+    constant = sp.S.One
+    shown = []
+    for part, sign in ((numerator, 1), (denominator, -1)):
+        for piece in sp.Mul.make_args(part):
+            base, exponent = piece.as_base_exp()
+            if not base.has(x) or not base.is_Add or not exponent.is_Integer:
+                shown.append(piece**sign)
+                continue
+            scale, plain = _without_scale(base, x, inside)
+            constant *= scale ** (exponent * sign)
+            shown.append(plain ** (exponent * sign))
+    field = Field([constant])
+    above, below = sp.fraction(sp.together(field.decode(field.encode(constant))))
+    return factor * above * sp.Mul(*shown) / below
+
+
+def _without_scale(base: sp.Expr, x: sp.Symbol, inside: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """A sum as (constant, sum with the shortest coefficients)."""
+    pairs = [term.as_independent(x, as_Add=False) for term in sp.Add.make_args(base)]
+    collected: dict[sp.Expr, sp.Expr] = {}
+    for coefficient, dependent in pairs:
+        collected[dependent] = collected.get(dependent, sp.S.Zero) + coefficient
+    field = Field(collected.values())
+    elements = [field.encode(c) for c in collected.values()]
+    short = field.simplest(elements)
+    place = next(i for i, e in enumerate(elements) if e)
+    scale = field.decode(field.multiply(elements[place], field.inverse(short[place])))
+    plain = sp.Add(*(field.decode(s) * d for s, d in zip(short, collected, strict=True)))
+    values = sample_values(plain.free_symbols | inside.free_symbols - {x}, ("3/7",))[0]
+    values.pop(x, None)
+    if sp.N(plain.subs(values).subs(x, inside.subs(values))).is_negative:
+        return -scale, -plain
+    return scale, plain
+
+
+def _middle(system: System) -> sp.Expr:
+    """A place inside the support: its middle, or one near its finite end."""
+    low, high = system.problem.support()
+    if low.is_infinite or high.is_infinite:
+        return sp.S.One if low.is_infinite and high.is_infinite else low + 1 if high.is_infinite else high - 1
+    return low + sp.Rational(4, 7) * (high - low)
 
 
 def reduced(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
@@ -114,26 +157,32 @@ def _gcd(field: Field, a: list[Any], b: list[Any]) -> list[Any]:
 def _check(system: System, condition, demand: sp.Expr, numerator, denominator, expression) -> Checked:
     """One condition, exactly and at 50 digits."""
     try:
-        found = _found_exactly(system, condition, numerator, denominator, expression)
-        exact = None if found is None else is_zero(found - demand)
+        exact = is_zero(_found_exactly(system, condition, numerator, denominator) - demand)
         residual = _numerical_residual(system, condition, demand, expression)
     except RatfitError:
         return Checked(condition, demand, False, None)
-    numerically = residual is not None and residual < TOLERANCE * (1 + _size(demand))
-    holds = numerically if exact is None and found is None else exact if exact == numerically else None
-    return Checked(condition, demand, holds, None if residual is None else float(residual))
+    numerically = residual < TOLERANCE * (1 + _size(demand))
+    holds = exact if exact == numerically else None
+    return Checked(condition, demand, holds, float(residual))
 
 
 def _size(demand: sp.Expr) -> mpmath.mpf:
     values = sample_values(demand.free_symbols, ("1/7",))[0]
-    return abs(mpmath.mpf(sp.Float(sp.N(demand.subs(values), 20), 20)._mpf_))
+    return abs(_mp(demand.subs(values)))
 
 
-def _found_exactly(system: System, condition, numerator, denominator, expression) -> sp.Expr | None:
-    """The number that the candidate gives, in closed form; None for an integral, which numerics decide."""
+def _found_exactly(system: System, condition, numerator, denominator) -> sp.Expr:
+    """The number that the candidate gives, in closed form."""
     x = system.problem.variable
     if isinstance(condition, Integral):
-        return None
+        (low, high), rest = integral_parts(system.problem, condition)
+        primitive = primitive_of(condition.weight * system.shape.factor * numerator, denominator, x)
+        return primitive.subs(x, high) - primitive.subs(x, low) + rest
+    if system.shape.power is not None:
+        # A free exponent n > 2 is written as 2 plus something positive: then sympy knows that 0**(n - 2) is 0.
+        above = {s: s.low + sp.Dummy(positive=True) for s in numerator.free_symbols if isinstance(s, Parameter) and s.high == sp.oo}
+        value = sp.powsimp(sp.expand(sp.diff(numerator.subs(above), x, condition.order)), combine="exp").subs(x, condition.at)
+        return value.subs({v.args[1] if v.is_Add else v: s - s.low for s, v in above.items()})
     series = [taylor(p, x, condition.at, condition.order) for p in (numerator, denominator)]
     series.append(taylor(system.shape.factor, x, condition.at, condition.order))
     field = Field([c for s in series for c in s])
@@ -151,7 +200,7 @@ def _found_exactly(system: System, condition, numerator, denominator, expression
     return field.decode(total) * sp.factorial(condition.order)
 
 
-def _numerical_residual(system: System, condition, demand: sp.Expr, expression: sp.Expr) -> mpmath.mpf | None:
+def _numerical_residual(system: System, condition, demand: sp.Expr, expression: sp.Expr) -> mpmath.mpf:
     """The largest |found - demanded| over sampled parameters, by numerical differentiation or quadrature."""
     symbols = (expression.free_symbols | demand.free_symbols) - {system.problem.variable}
     symbols |= set().union(*(e.free_symbols for e in condition.expressions())) - {system.problem.variable}
@@ -159,7 +208,7 @@ def _numerical_residual(system: System, condition, demand: sp.Expr, expression: 
     for values in sample_values(symbols, ("1/7", "4/7", "9/11")):
         with mpmath.workdps(DIGITS):
             found = _numerical(system, condition, expression, values)
-            wanted = mpmath.mpf(sp.Float(sp.N(demand.subs(values), DIGITS), DIGITS)._mpf_)
+            wanted = _mp(demand.subs(values))
             if not mpmath.isfinite(found):
                 raise RatfitError("the condition has no finite value")
             worst = max(worst, abs(found - wanted))
@@ -171,8 +220,7 @@ def _numerical(system: System, condition, expression: sp.Expr, values: Mapping[s
     if isinstance(condition, Integral):
         (low, high), rest = integral_parts(system.problem, condition)
         function = sp.lambdify(x, (condition.weight * expression).subs(values), "mpmath", cse=False)
-        ends = [sp.N(end.subs(values), DIGITS) for end in (low, high)]
-        return mpmath.quad(function, [mpmath.mpf(e._mpf_) for e in ends]) + mpmath.mpf(sp.Float(rest.subs(values), DIGITS)._mpf_)
+        return mpmath.quad(function, [_mp(low.subs(values)), _mp(high.subs(values))]) + _mp(rest.subs(values))
     at = condition.at.subs(values)
     low, high = (end.subs(values) for end in system.problem.support())
     side = 1 if at == low else -1 if at == high else 0
@@ -180,7 +228,7 @@ def _numerical(system: System, condition, expression: sp.Expr, values: Mapping[s
     def moved(distance: mpmath.mpf) -> mpmath.mpf:
         return function(_mp(at) + distance)
 
-    function = sp.lambdify(x, expression.subs({s: v for s, v in values.items()}), "mpmath", cse=False)
+    function = sp.lambdify(x, expression.subs(values), "mpmath", cse=False)
     try:
         return mpmath.diff(moved, 0, condition.order, direction=side)
     except ZeroDivisionError:
@@ -188,7 +236,11 @@ def _numerical(system: System, condition, expression: sp.Expr, values: Mapping[s
 
 
 def _mp(number: sp.Expr) -> mpmath.mpf:
-    return mpmath.mpf(sp.N(number, mpmath.mp.dps + 10)._mpf_) if not number.is_Integer else mpmath.mpf(int(number))
+    """A constant at the working precision of mpmath; RatfitError for one that is not real."""
+    value = sp.N(number, mpmath.mp.dps + 10, maxn=2 * mpmath.mp.dps + 20)
+    if value.is_real is not True:
+        raise RatfitError(f"{number} is not a real number")
+    return mpmath.mpf(sp.Float(value, mpmath.mp.dps + 10)._mpf_)
 
 
 def _failure(system: System, checked: tuple[Checked, ...], common: sp.Expr) -> str:

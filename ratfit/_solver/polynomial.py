@@ -75,7 +75,7 @@ def solutions(equations: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol]) -> It
     for symbol, value, rest in _eliminations(polynomials, unknowns):
         others = [u for u in unknowns if u != symbol]
         for assignment in solutions([e.subs(symbol, value) for e in rest], others):
-            yield {**assignment, symbol: value.subs(assignment)}
+            yield {**assignment, symbol: _normal(value.subs(assignment))}
 
 
 def _polynomials(equations: Sequence[sp.Expr]) -> list[sp.Expr]:
@@ -166,13 +166,22 @@ def _roots(polynomial: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
     if degree == 2:
         a, b, c = coefficients
         root = sp.sqrt(sp.factor(sp.expand(b**2 - 4 * a * c)))
-        return [sp.simplify((-b + sign * root) / (2 * a)) for sign in (1, -1)]
+        return [_normal((-b + sign * root) / (2 * a)) for sign in (1, -1)]
     roots = sp.roots(sp.Poly(polynomial, symbol))
     if sum(roots.values()) == degree:
         return list(roots)
     if all(c.is_Rational for c in coefficients):
         return sp.Poly(polynomial, symbol).all_roots()
     raise Undecided(f"{symbol} is a root of a polynomial of degree {degree} that has no closed form")
+
+
+def _normal(value: sp.Expr) -> sp.Expr:
+    """The shortest form of a value in the exact field; a value that is not real stays as it is."""
+    try:
+        field = Field([value])
+        return field.decode(field.encode(value))
+    except RatfitError:
+        return value
 
 
 def _by_groebner(polynomials, unknowns) -> Iterator[tuple[sp.Symbol, sp.Expr, list[sp.Expr]]]:

@@ -9,6 +9,7 @@ from ratfit._field import is_zero, sampled
 from ratfit._parse import RatfitError
 from ratfit._solver.solution import Solution, Undecided
 from ratfit._system import System, same
+from ratfit._target import Parameter
 
 
 def solve_power(system: System) -> list[Solution]:
@@ -61,8 +62,8 @@ def _exponents_at_zero(
 def _with_conditions_elsewhere(system, amplitude, exponent, factor, elsewhere, n) -> list[Solution]:
     x = system.problem.variable
     base, _ = system.shape.power
-    symbol = n if isinstance(exponent, tuple) else exponent
-    free = {n: exponent} if isinstance(exponent, tuple) else {}
+    symbol = Parameter(n.name, *exponent) if isinstance(exponent, tuple) else exponent
+    free = {symbol: exponent} if isinstance(exponent, tuple) else {}
     remaining = list(elsewhere)
     if factor is None:
         condition, demand = remaining.pop(0)

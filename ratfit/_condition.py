@@ -137,6 +137,14 @@ class Integral(AbstractCondition):
         return tuple(e for e in (self.weight, *(self.over or ()), self.equals) if e is not None)
 
 
+def describe(condition: AbstractCondition) -> str:
+    """A condition in a few words: "value at 0", "derivative of order 2 at pi/2", "integral with weight 2*t over ..."."""
+    if isinstance(condition, Integral):
+        return f"integral with {condition.place}"
+    order = condition.order  # type: ignore[attr-defined]
+    return f"derivative of order {order} at {condition.place}" if order > 1 else f"{condition.kind} at {condition.place}"
+
+
 def _set_exact(condition: AbstractCondition, field: str) -> None:
     given: Exact | None = getattr(condition, field)
     if given is not None:

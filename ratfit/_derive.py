@@ -7,6 +7,7 @@ from pathlib import Path
 
 import sympy as sp
 
+from ratfit._condition import describe
 from ratfit._deadline import OutOfTime, time_limit
 from ratfit._field import is_zero
 from ratfit._fit import Candidate, Fit
@@ -120,7 +121,7 @@ def _with_clash(fit: Fit, route: str) -> Fit:
     problem = fit.problem
     reasons = [f"{c.expression}: {c.reason}" for c in fit.rejected]
     clash = _smallest_clash(problem, route)
-    names = [f"{c.kind} at {c.place}" for c in clash]
+    names = [describe(c) for c in clash]
     kind = "these conditions clash" if len(clash) < len(problem.conditions) else "all conditions together clash"
     reasons.append(f"{kind} in this form: {'; '.join(names)}. Drop one of them or raise a degree")
     return Fit(problem, fit.status, fit.route, (), fit.rejected, tuple(reasons), fit.equations)

@@ -19,6 +19,9 @@ from ratfit._sampling import Setting, check_protocol, draw, setting
 if TYPE_CHECKING:
     from jaxtyping import Array, Float, Float64
 
+    Values = Float[Array, " size"]
+    Exact = Float64[Array, " size"]
+
 CHUNK = 2**18  # 2 MiB of float64, so that a chunk and what is made of it stay in the cache
 
 
@@ -170,7 +173,7 @@ def _chunks(place: Setting, samples: int, sampling: str, seed: int, dtype: str) 
     exact = kernel(place.exact, place.variable).at(place.values, "float64")
     size = min(CHUNK, samples)
     for start in range(0, samples, size):
-        # Three kernels, not one: in one, XLA may drop the rounding to float32 between the point and the exact function.
+        # Three kernels, not one: inside one, XLA may skip the rounding to float32 (xla_allow_excess_precision).
         points = draw(sampling, place.low, place.high, seed, start, size, dtype)
         with precision(dtype):
             fitted = fit(points)
@@ -178,9 +181,7 @@ def _chunks(place: Setting, samples: int, sampling: str, seed: int, dtype: str) 
             yield _totals(points, fitted, exact(points.astype("float64")), min(size, samples - start))
 
 
-def _totals(
-    points: Float[Array, " size"], fit: Float[Array, " size"], exact: Float64[Array, " size"], count: int
-) -> Totals:
+def _totals(points: Values, fit: Values, exact: Exact, count: int) -> Totals:
     """The totals of the first `count` points; a last chunk is drawn whole, so that no second kernel is compiled."""
     import jax
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-import numpy as np
 import sympy as sp
 
 from ratfit._condition import AbstractCondition
@@ -109,7 +108,8 @@ class Fit:
         """Operations a sample of the best schedule found; work on parameters alone and clamps are not counted."""
         from ratfit._schedule import schedule
 
-        return schedule(self.chosen, self.problem.variable).cost
+        ranges = {self.problem.variable: self.problem.support(), **self.problem.parameters}
+        return schedule(self.chosen, self.problem.variable, ranges).cost
 
     def __call__(self, at: Any, **values: float) -> Any:
         """The fit's value; `values` give the parameters, and free coefficients without a recorded choice, by name.
@@ -130,8 +130,6 @@ class Fit:
         jax = sys.modules.get("jax")  # a JAX array cannot come from a program that never imported JAX
         backend = "jax" if jax is not None and isinstance(at, jax.Array) else "numpy"
         function = lower(self.formula, [self.problem.variable, *symbols], backend)
-        if isinstance(at, (list, tuple)):
-            at = np.asarray(at)
         return function(at, *(values[s.name] for s in symbols))
 
     def _repr_latex_(self) -> str | None:

@@ -263,8 +263,9 @@ def rounded(number: sp.Expr) -> float:
     """The double nearest to an exact real number; one complex by rounding alone (casus irreducibilis) is real."""
     if number is sp.nan:
         return math.nan
-    real, imaginary = number.evalf(30).as_real_imag()
-    if not (real.is_extended_real and imaginary.is_extended_real and abs(imaginary) <= abs(real) * 1e-20):
+    real, imaginary = parts = number.evalf(30).as_real_imag()
+    decided = all(isinstance(part, sp.Number) and part is not sp.nan for part in parts)
+    if not (decided and abs(imaginary) <= abs(real) * 1e-20):
         raise RatfitError(f"{number} is not a real number: what is computed on arrays must be real")
     return float(real)
 

@@ -40,7 +40,7 @@ MAX_DECIMAL_EXPONENT = 300
 MAX_EXPONENT = 1000
 MAX_BITS = 4096
 MAX_NAME = 32
-LONG = 40
+LONG = 12
 
 _GRAMMAR = r"""
 ?start: sum
@@ -79,10 +79,10 @@ _ANALYTIC = (
     "sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log erf erfc gamma loggamma".split()
 )
 _ROOTS = {"sqrt": sp.Rational(1, 2), "cbrt": sp.Rational(1, 3)}
-_DECIDED = ("Abs", "sign", "floor", "ceiling", "Heaviside")
+_STEPS = ("Abs", "sign", "floor", "ceiling", "Heaviside")
 
 FUNCTIONS: dict[str, tuple[Callable[..., sp.Expr], Sequence[int]]] = {
-    **{name: (getattr(sp, name), (1,)) for name in (*_ANALYTIC, *_ROOTS, *_DECIDED)},
+    **{name: (getattr(sp, name), (1,)) for name in (*_ANALYTIC, *_ROOTS, *_STEPS)},
     "atan2": (sp.atan2, (2,)),
     "Min": (sp.Min, range(1, 9)),
     "Max": (sp.Max, range(1, 9)),
@@ -142,11 +142,11 @@ def parse_expression(text: str, names: Mapping[str, sp.Expr], what: str = "expre
     """
     try:
         _check_text(text)
-        node = _read(text, names)
-        _check_whole(node.expr)
+        expr = _read(text, names)
+        _check_whole(expr)
     except _Refusal as refusal:
         raise ParseError(refusal.message(text, what)) from None
-    return node.expr
+    return expr
 
 
 # Refusals
@@ -185,8 +185,12 @@ def _placed(start: int, end: int) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class _Reading:
+    """What one call knows: the names, the values of numbers, and the symbols that stand for long parts."""
+
     names: Mapping[str, sp.Expr]
     values: dict[sp.Expr, _Value] = field(default_factory=dict)
+    symbols: dict[sp.Expr, sp.Dummy] = field(default_factory=dict)
+    meanings: dict[sp.Expr, sp.Expr] = field(default_factory=dict)
 
 
 _reading: ContextVar[_Reading] = ContextVar("_reading")
@@ -213,13 +217,14 @@ def _parser() -> Lark:
     return Lark(_GRAMMAR, parser="lalr", lexer="basic", transformer=_Builder())
 
 
-def _read(text: str, names: Mapping[str, sp.Expr]) -> _Node:
+def _read(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
     from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
     parser = _parser()
     token = _reading.set(_Reading(names))
     try:
-        return parser.parse(text)  # type: ignore[return-value]
+        node = parser.parse(text)
+        return _unveiled(node.expr, {})  # type: ignore[return-value]
     except UnexpectedCharacters as error:
         at = error.pos_in_stream
         raise _Refusal(_character_remedy(text[at]), at, at + 1) from None
@@ -242,7 +247,9 @@ class _Builder:
         (token,) = children
         with _placed(token.start_pos, token.end_pos):
             expr = _named(str(token))
-            return _bounded(_Node(expr, token.start_pos, token.end_pos, size=_size(expr)))
+            size = _size(expr)
+            node = _bounded(_Node(expr, token.start_pos, token.end_pos, size=size))
+            return node if size == 1 else replace(node, expr=_veiled_throughout(expr))
 
     def group(self, children: list[Any]) -> _Node:
         left, node, right = children
@@ -253,7 +260,7 @@ class _Builder:
         nodes = [node for node in arguments if node is not None]
         with _placed(name.start_pos, right.end_pos):
             _check_call(str(name), len(nodes))
-            expr = _call(str(name), [_finite(node) for node in nodes], sum(node.size for node in nodes))
+            expr = _call(str(name), [_finite(node) for node in nodes])
             return _joined(expr, nodes, name.start_pos, right.end_pos, 1)
 
     def power(self, children: list[Any]) -> _Node:
@@ -274,20 +281,26 @@ class _Builder:
         with _placed(nodes[0].start, nodes[-1].end):
             if len(nodes) == 1 and nodes[0].expr.is_infinite:
                 return replace(nodes[0], expr=-nodes[0].expr, negative=False)
-            sign = -1 if sum(node.negative for node in nodes) % 2 else 1
-            unsigned = [replace(node, negative=False) for node in nodes]
-            expr = _product(sign, unsigned, ["*", *children[1::2]])
-            return _joined(expr, nodes, nodes[0].start, nodes[-1].end, 0)
+            sign = sp.Integer((-1) ** sum(node.negative for node in nodes))
+            factors = [_factor(node, operator) for operator, node in zip(["*", *children[1::2]], nodes, strict=True)]
+            return _joined(_product([sign, *factors]), nodes, nodes[0].start, nodes[-1].end, 0)
 
     def sum(self, children: list[Any]) -> _Node:
         nodes = children[::2]
         if len(nodes) == 1:
             return nodes[0]
         with _placed(nodes[0].start, nodes[-1].end):
-            terms = [_finite(node) for node in nodes]
-            signs = ["+", *children[1::2]]
-            expr = sp.Add(*[-term if sign == "-" else term for sign, term in zip(signs, terms, strict=True)])
+            terms = zip(["+", *children[1::2]], map(_finite, nodes), strict=True)
+            expr = _sum([-term if sign == "-" else term for sign, term in terms])
             return _joined(expr, nodes, nodes[0].start, nodes[-1].end, 0)
+
+
+def _factor(node: _Node, operator: str) -> sp.Expr:
+    expr = _finite(replace(node, negative=False))
+    if operator == "*":
+        return expr
+    with _placed(node.start, node.end):
+        return _power(expr, sp.S.NegativeOne)
 
 
 def _joined(expr: sp.Expr, nodes: Sequence[_Node], start: int, end: int, deeper: int) -> _Node:
@@ -358,23 +371,35 @@ def _undeclared(name: str, names: Mapping[str, sp.Expr]) -> str:
 # Building, with the checks that come before sympy's evaluation
 
 
-def _product(sign: int, nodes: Sequence[_Node], operators: Sequence[str]) -> sp.Expr:
-    factors = []
-    for operator, node in zip(operators, nodes, strict=True):
-        expr = _finite(node)
-        with _placed(node.start, node.end):
-            factors.append(_power(expr, sp.S.NegativeOne) if operator == "/" else expr)
-    # sympy asks each factor beside an exact zero whether it is finite, which may take long.
-    return sp.S.Zero if any(factor.is_zero is True and factor.is_Rational for factor in factors) else sp.Mul(sign, *factors)
+def _sum(terms: Iterable[sp.Expr]) -> sp.Expr:
+    expr = sp.Add(*terms)
+    numbers = [term for term in sp.Add.make_args(expr) if _is_number(term)]
+    if len(numbers) > 1:
+        _value(sp.Add(*numbers))
+    return expr
+
+
+def _product(factors: Sequence[sp.Expr]) -> sp.Expr:
+    if sp.S.Zero in factors:
+        # sympy would ask each other factor whether it is finite, which may take long.
+        return sp.S.Zero
+    return _unveiled_sums(sp.Mul(*[_veiled(factor) if factor.is_Add else factor for factor in factors]))
 
 
 def _power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    if base.is_Rational and not base and exponent.is_Rational and exponent < 0:
+    if base.is_zero and exponent.is_Rational and exponent < 0:
         raise _Refusal("division by zero; take the zero out of the denominator")
-    if base.is_number and exponent.is_number and base and exponent:
+    if _is_number(base) and _is_number(exponent) and base and exponent:
         _evaluated("power", [base, exponent])
+    if exponent is sp.S.One:
+        return base
     _bound_power(base, exponent)
-    return sp.Pow(base, exponent)
+    if base is sp.E:
+        return sp.exp(_veiled(exponent))
+    if exponent.is_Integer and base.is_Mul:
+        factors = [_veiled(factor) if factor.is_Add else factor for factor in base.args]
+        return _unveiled_sums(sp.Mul(*[sp.Pow(factor, exponent) for factor in factors]))
+    return _unveiled_sums(sp.Pow(_veiled(base), _veiled(exponent)))
 
 
 def _bound_power(base: sp.Expr, exponent: sp.Expr) -> None:
@@ -396,10 +421,8 @@ def _bound_exponential(argument: sp.Expr) -> None:
     # exp(n*log(b)) becomes b**n.
     for term in sp.Add.make_args(argument):
         for factor in sp.Mul.make_args(term):
-            if isinstance(factor, sp.log):
-                rest = term / factor
-                if rest.is_Rational:
-                    _bound_power(factor.args[0], rest)
+            if isinstance(factor, sp.log) and (term / factor).is_Rational:
+                _bound_power(factor.args[0], term / factor)
 
 
 def _bits(number: sp.Rational) -> int:
@@ -417,39 +440,38 @@ def _check_call(name: str, count: int) -> None:
         raise _Refusal(f"{name} takes {wanted}, not {count}")
 
 
-def _call(name: str, arguments: list[sp.Expr], size: int) -> sp.Expr:
+def _call(name: str, arguments: list[sp.Expr]) -> sp.Expr:
     if name in _ROOTS:
         return _power(arguments[0], _ROOTS[name])
-    if name == "clamp":
-        return _extreme("Min", [_extreme("Max", arguments[:2], size), arguments[2]], size)
-    if name in ("Min", "Max"):
-        return _extreme(name, arguments, size)
     if name == "exp":
-        _bound_exponential(arguments[0])
-    if not all(argument.is_number for argument in arguments):
-        return _applied(name, arguments, size)
-    if name in _DECIDED:
-        return _decided(name, arguments[0])
-    _evaluated(name, arguments)
-    if name == "loggamma" and arguments[0].is_Rational and arguments[0] > 170:
-        return sp.loggamma(*arguments, evaluate=False)
-    return _applied(name, arguments, size)
+        return _power(sp.E, arguments[0])
+    if name == "clamp":
+        return _extreme("Min", [_extreme("Max", arguments[:2]), arguments[2]])
+    if name in ("Min", "Max"):
+        return _extreme(name, arguments)
+    numbers = all(_is_number(argument) for argument in arguments)
+    if name in _STEPS:
+        return _step(name, arguments[0]) if numbers else _applied(name, arguments, arguments[0].is_Symbol)
+    if numbers:
+        _evaluated(name, arguments)
+    # sympy makes log(gamma(n)) of loggamma(n), and gamma(n) a number of any length
+    long = name == "loggamma" and numbers and arguments[0] > 170
+    return _applied(name, arguments, not long and all(map(_is_short, arguments)))
 
 
-def _applied(name: str, arguments: Sequence[sp.Expr], size: int) -> sp.Expr:
+def _applied(name: str, arguments: Sequence[sp.Expr], short: bool) -> sp.Expr:
     function = FUNCTIONS[name][0]
-    if size <= LONG:
+    if short:
         result = function(*arguments)
         if all(part.func.__name__ in FUNCTIONS for part in result.atoms(Application)):
             return result
-    return function(*arguments, evaluate=False)
+    return _veiled(function(*arguments, evaluate=False))
 
 
-def _decided(name: str, number: sp.Expr) -> sp.Expr:
-    """A step function of a number, from its value: sympy's own way out is a search of unknown length."""
+def _step(name: str, number: sp.Expr) -> sp.Expr:
+    """A step function of a number, from its value: sympy's own way is a search of unknown length."""
     if name in ("floor", "ceiling"):
-        below = _floor(number) if name == "floor" else -_floor(-number)
-        return sp.Integer(below)
+        return sp.Integer(_floor(number) if name == "floor" else -_floor(-number))
     sign = _sign(number)
     if name == "Heaviside":
         return sp.Rational(sign + 1, 2)
@@ -473,16 +495,95 @@ def _floor(number: sp.Expr) -> int:
     return below
 
 
-def _extreme(name: str, arguments: Sequence[sp.Expr], size: int) -> sp.Expr:
+def _extreme(name: str, arguments: Sequence[sp.Expr]) -> sp.Expr:
     function = FUNCTIONS[name][0]
-    flat = [part for argument in arguments for part in (argument.args if isinstance(argument, function) else [argument])]
-    numbers = [part for part in flat if part.is_number]
-    rest = [part for part in flat if not part.is_number]
+    parts = [part for argument in arguments for part in _operands(argument, function)]
+    numbers = [part for part in parts if _is_number(part)]
+    rest = [part for part in parts if not _is_number(part)]
     if numbers:
         rest.append(functools.reduce(lambda a, b: a if (_sign(a - b) >= 0) == (name == "Max") else b, numbers))
     if len(set(rest)) == 1:
         return rest[0]
-    return _applied(name, rest, size)
+    return _applied(name, rest, len(rest) <= 3 and all(part.is_Symbol or part.is_Rational for part in rest))
+
+
+def _operands(expr: sp.Expr, function: Any) -> Sequence[sp.Expr]:
+    meaning = _reading.get().meanings.get(expr, expr)
+    return meaning.args if isinstance(meaning, function) else [expr]
+
+
+# Veils: a long part is a symbol of its own while the rest is built. sympy answers questions about signs by walking
+# through everything below, exponentially often in the depth; behind a veil there is nothing to walk through.
+
+
+def _is_short(expr: sp.Expr) -> bool:
+    meanings = _reading.get().meanings
+    if expr in meanings:
+        return False
+    parts = list(islice(sp.preorder_traversal(expr), LONG + 1))
+    return len(parts) <= LONG and not any(part in meanings for part in parts) and _layers(expr) <= 2
+
+
+def _layers(expr: sp.Expr) -> int:
+    below = max(map(_layers, expr.args), default=0)
+    return below if not expr.args or expr.is_Add or expr.is_Mul else below + 1
+
+
+def _veiled(expr: sp.Expr) -> sp.Expr:
+    """The expression itself where it is short or a power of a symbol, or else a symbol that means it."""
+    base, exponent = expr.as_base_exp()
+    if base.is_Symbol and exponent.is_Rational or _is_short(expr):
+        return expr
+    reading = _reading.get()
+    if expr not in reading.symbols:
+        value = _value(expr) if _is_number(expr) else None
+        symbol = sp.Dummy() if value is None else sp.Dummy(positive=value.high > 0, negative=value.high < 0)
+        reading.symbols[expr], reading.meanings[symbol] = symbol, expr
+        if value is not None:
+            reading.values[symbol] = value
+    return reading.symbols[expr]
+
+
+def _unveiled_sums(expr: sp.Expr) -> sp.Expr:
+    """A sum stands behind a veil only under a power: as a factor it has to take part in what sympy does with sums."""
+    meanings = _reading.get().meanings
+    factors = sp.Mul.make_args(expr)
+    shown = [meanings[factor] if factor in meanings and not meanings[factor].is_Function else factor for factor in factors]
+    return expr if shown == list(factors) else sp.Mul(*shown)
+
+
+def _veiled_throughout(expr: sp.Expr) -> sp.Expr:
+    """An expression from outside, brought into the form that the others have."""
+    if not expr.args or _is_short(expr):
+        return expr
+    args = [_veiled_throughout(arg) for arg in expr.args]
+    if expr.is_Add:
+        return _sum(args)
+    if expr.is_Mul:
+        return _product(args)
+    return _power(*args) if expr.is_Pow else _veiled(expr.func(*args, evaluate=False))
+
+
+def _unveiled(expr: sp.Expr, done: dict[sp.Expr, sp.Expr]) -> sp.Expr:
+    """The expression with every symbol replaced by what it means, and nothing evaluated anew."""
+    meanings = _reading.get().meanings
+    if expr not in done:
+        if expr in meanings:
+            done[expr] = _unveiled(meanings[expr], done)
+        elif expr.free_symbols.isdisjoint(meanings):
+            done[expr] = expr
+        else:
+            args = [_unveiled(arg, done) for arg in expr.args]
+            if expr.is_Add or expr.is_Mul:
+                args = sorted(
+                    [part for arg in args for part in expr.make_args(arg)],
+                    key=lambda arg: (not arg.is_Rational, _order(arg)),
+                )
+            done[expr] = expr.func(*args, evaluate=False)
+    return done[expr]
+
+
+_order = functools.cmp_to_key(sp.Basic.compare)
 
 
 # Values of numbers, at two precisions: what cancels shows as a disagreement
@@ -541,6 +642,11 @@ def _in_range(value: _Value) -> _Value:
     return value
 
 
+def _is_number(expr: sp.Expr) -> bool:
+    values = _reading.get().values
+    return all(symbol in values for symbol in expr.free_symbols)
+
+
 def _settled(number: sp.Expr, value: _Value) -> _Value:
     low, high = value
     if not number.is_Rational and (not high or abs(low - high) > abs(high) * 2.0**-40):
@@ -552,16 +658,9 @@ def _settled(number: sp.Expr, value: _Value) -> _Value:
 
 
 def _check_result(expr: sp.Expr) -> None:
-    if expr.is_number:
-        _check_real(sp.Add.make_args(expr))
+    _check_real(sp.Add.make_args(expr))
+    if _is_number(expr):
         _value(expr)
-    elif expr.is_Add:
-        numbers = [term for term in expr.args if term.is_number]
-        _check_real(expr.args)
-        if len(numbers) > 1:
-            _value(sp.Add(*numbers))
-    else:
-        _check_real([expr])
     for factor in sp.Mul.make_args(expr):
         if factor.is_Rational and _bits(factor) > MAX_BITS:
             raise _Refusal("this number has too many digits; round it")

@@ -33,7 +33,7 @@ class Problem:
     """What must be found: a fit of this form that keeps these conditions.
 
     Arguments: `conditions`; `form`; `target`, or in its place `variable` and `domain` when every condition states
-    `equals`; `parameters`, those of the expressions are found by themselves; `choice`, recorded values for free
+    `equals`; `parameters`, symbol -> range, or just the symbols (those of the expressions are found by themselves); `choice`, recorded values for free
     coefficients, by name; `references`; `name`. Raises RatfitError for what does not fit together: a symbol that
     nobody declared, a condition outside the domain, a missing `equals`.
     """
@@ -44,7 +44,7 @@ class Problem:
     target: Target | None = None
     variable: sp.Symbol = None  # type: ignore[assignment]  # set from the target
     domain: tuple[sp.Expr, sp.Expr] = None  # type: ignore[assignment]  # set from the target
-    parameters: tuple[Parameter, ...] = ()
+    parameters: Mapping[Parameter, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
     choice: Mapping[str, sp.Expr] = field(default_factory=dict)
     references: tuple[Reference, ...] = ()
     name: str = "problem"
@@ -86,12 +86,12 @@ def _expressions(problem: Problem) -> list[tuple[str, sp.Expr]]:
     return found + [("form", e) for e in (getattr(problem.form, n, None) for n in ("expression", "base")) if e is not None]
 
 
-def _parameters(problem: Problem) -> tuple[Parameter, ...]:
+def _parameters(problem: Problem) -> dict[Parameter, tuple[sp.Expr, sp.Expr]]:
     found = dict.fromkeys(problem.parameters)
     for _, expression in _expressions(problem):
         ordered = sorted((s for s in expression.free_symbols if isinstance(s, Parameter)), key=lambda s: s.name)
         found.update(dict.fromkeys(ordered))
-    return tuple(found)
+    return {p: (p.low, p.high) for p in found}
 
 
 def _check(problem: Problem) -> None:

@@ -81,15 +81,15 @@ def problem_of(tables: Mapping[str, Any], name: str = "problem") -> Problem:
     for key in ("variable", "domain", "form", "condition"):
         if key not in tables:
             raise RatfitError(f"the key {key!r} is missing; `ratfit init FILE` writes a file to start from")
-    variable = sp.Symbol(check_name(_string(tables["variable"], "variable"), "variable"), real=True)
     parameters = _parameters_of(_table(tables, "parameters"))
     names: dict[str, sp.Expr] = {p.name: p for p in parameters}
+    domain = check_domain(_pair(tables["domain"], "domain", names))
+    variable = _variable_of(tables["variable"], domain)
     _add_name(names, variable.name, variable)
     reference_tables = _tables(tables, "reference")
     own = _reference_names(reference_tables, names)
     for let, text in _table(tables, "let").items():
         _add_name(names, check_name(let, "let"), _expression(text, names | own, f"let {let}"))
-    domain = check_domain(_pair(tables["domain"], "domain", names))
     target = None
     if "target" in tables:
         target = Target(_expression(tables["target"], names, "target"), variable, domain)
@@ -98,7 +98,7 @@ def problem_of(tables: Mapping[str, Any], name: str = "problem") -> Problem:
         target=target,
         variable=variable,
         domain=domain,
-        parameters=parameters,
+        parameters={p: (p.low, p.high) for p in parameters},
         form=_form_of(_table(tables, "form"), names),
         conditions=tuple(condition_of(t, names, f"condition {i}") for i, t in enumerate(_tables(tables, "condition"), 1)),
         choice={n: _expression(v, {p.name: p for p in parameters}, f"choice {n}") for n, v in _table(tables, "choice").items()},
@@ -151,6 +151,12 @@ def _form_of(table: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> Abstract
         if name in names:
             raise RatfitError(f"form: the unknown {name} is already the name of something else; rename it")
     return Form(_expression(table["expression"], {**names, **symbols}, "form, expression"), tuple(symbols.values()), **common)
+
+
+def _variable_of(name: Any, domain: tuple[sp.Expr, sp.Expr]) -> sp.Symbol:
+    """The variable; on a domain without negative numbers its square's root is itself, which keeps formulas short."""
+    name = check_name(_string(name, "variable"), "variable")
+    return sp.Symbol(name, nonnegative=True) if domain[0].is_nonnegative else sp.Symbol(name, real=True)
 
 
 def _parameters_of(table: Mapping[str, Any]) -> tuple[Parameter, ...]:

@@ -13,7 +13,6 @@ import numbers
 import os
 import platform
 import secrets
-import stat
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
@@ -110,20 +109,21 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     **Fails** with `RatfitError` for a folder that is missing or may not be written to, and for a path that is a folder.
     """
     with _explained(path):
-        if os.path.exists(path) and not stat.S_ISREG(os.stat(path).st_mode):
-            Path(path).write_text(text, encoding="utf-8")  # /dev/stdout, say: there is nothing to move into its place
+        file = Path(path)
+        if file.exists() and not file.is_file():
+            file.write_text(text, encoding="utf-8")  # /dev/stdout, say: nothing may be moved into its place
         else:
-            _replace(Path(os.path.realpath(path)), text)  # of a link its target is replaced, not the link
+            _replace(file.resolve(), text)  # of a link its target is replaced, not the link
 
 
 def _replace(path: Path, text: str) -> None:
     beside = path.with_name(f".{secrets.token_hex(8)}.tmp")
     try:
-        with open(beside, "x", encoding="utf-8") as file:
+        with beside.open("x", encoding="utf-8") as file:
             file.write(text)
             file.flush()
             os.fsync(file.fileno())
-        os.replace(beside, path)
+        beside.replace(path)
     finally:
         beside.unlink(missing_ok=True)
 
@@ -134,7 +134,7 @@ def _explained(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         yield
     except FileNotFoundError:
-        raise RatfitError(f"{path}: there is no folder {os.path.dirname(path) or '.'}; make it first") from None
+        raise RatfitError(f"{path}: there is no folder {Path(path).parent}; make it first") from None
     except IsADirectoryError:
         raise RatfitError(f"{path} is a folder: name a file in it") from None
     except PermissionError:
@@ -150,7 +150,7 @@ def append_row(path: str | os.PathLike[str], record: Record) -> None:
     else, which stays as it is, and where nothing can be written.
     """
     line = json.dumps(record.to_json_object(), allow_nan=False) + "\n"
-    with _explained(path), open(path, "a+b") as file:
+    with _explained(path), Path(path).open("a+b") as file:
         _mend(path, file)
         file.write(line.encode())
         file.flush()
@@ -199,7 +199,7 @@ def read_rows(path: str | os.PathLike[str]) -> list[Row]:
 
     **Fails** with `RatfitError`, which names the line, for a file that holds anything else.
     """
-    if not os.path.exists(path):
+    if not Path(path).exists():
         return []
     with _explained(path):
         *lines, last = Path(path).read_bytes().split(b"\n")

@@ -20,6 +20,9 @@ from ratfit._parse import RatfitError, nearest
 if TYPE_CHECKING:
     from jaxtyping import Array, Float, Float64
 
+    Doubles = Float64[Array, " samples"]
+    Points = Float[Array, " size"]
+
 DTYPES = ("float32", "float64")
 
 
@@ -112,7 +115,7 @@ def _number(expression: sp.Expr, values: Mapping[sp.Symbol, float], what: str) -
     return lower(expression, tuple(values))(*values.values())
 
 
-def sample(sampling: str, low: float, high: float, samples: int, seed: int) -> Float64[Array, " samples"]:
+def sample(sampling: str, low: float, high: float, samples: int, seed: int) -> Doubles:
     """The points of a sampling protocol, inside the open interval (low, high), in the order of their counters.
 
     **Fails** with `RatfitError` for an unknown protocol, fewer than one sample, or a seed that is no 64-bit number.
@@ -121,9 +124,7 @@ def sample(sampling: str, low: float, high: float, samples: int, seed: int) -> F
     return draw(sampling, low, high, seed, 0, samples)
 
 
-def draw(
-    sampling: str, low: float, high: float, seed: int, start: int, size: int, dtype: str = "float64"
-) -> Float[Array, " size"]:
+def draw(sampling: str, low: float, high: float, seed: int, start: int, size: int, dtype: str = "float64") -> Points:
     """The points `start` to `start + size` of a protocol, drawn in float64 and then rounded to `dtype`.
 
     A point that rounding carries out of the open interval goes to the last number inside it: nothing is measured at an

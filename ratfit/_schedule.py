@@ -18,7 +18,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import mpmath
 import sympy as sp
@@ -28,7 +28,9 @@ from sympy.polys.rings import PolyRing
 
 _CLAMPS = (sp.Min, sp.Max, sp.Abs)
 _MOST_TERMS = 400  # of a product of two polynomials
-_MOST_FACTORED = 80  # terms of a polynomial that is worth factoring
+_MOST_VOLUME = 1500  # monomials up to the degrees of a polynomial that is worth factoring
+_MOST_COEFFICIENT = 200  # the same for a coefficient
+_MOST_MOVED = 16  # degree of a polynomial that is moved to a centre, or divided
 _MOST_GENERATORS = 9
 _MOST_DEGREE = 64
 _MOST_CENTRES = 3
@@ -588,7 +590,8 @@ class _Reader:
             above, below = above.rem(relations), below.rem(relations)
         if not above or not below:
             raise _Refused
-        above, below = above.cancel(below)
+        if max(_volume(above), _volume(below)) <= _MOST_VOLUME:
+            above, below = above.cancel(below)
         granted = frozenset(self.granted)
         return _Fraction(above, below, self.generators, self.constants, self.field, granted)
 
@@ -631,7 +634,14 @@ def _raised(a: Any, exponent: int) -> Any:
     return functools.reduce(_times, [a] * exponent, a.ring(1))
 
 
+def _volume(polynomial: Any) -> int:
+    """How many monomials there are up to its degrees: what the time of gcd and factorisation grows with."""
+    return math.prod(max(degree, 0) + 1 for degree in polynomial.degrees())
+
+
 def _added(a: tuple[Any, Any], b: tuple[Any, Any]) -> tuple[Any, Any]:
+    if max(_volume(a[1]), _volume(b[1])) > _MOST_VOLUME:
+        raise _Refused
     _, left, right = a[1].cofactors(b[1])
     return _times(a[0], right) + _times(b[0], left), _times(a[1], right)
 
@@ -653,7 +663,7 @@ def _terms(polynomial: Any, count: int, field: Any) -> _Terms:
 def _constant_factors(polynomial: Any, count: int, field: Any) -> list[Any]:
     """The irreducible factors of a polynomial that is free of the first `count` generators; none otherwise."""
     terms = _terms(polynomial, count, field)
-    if len(terms) != 1 or any(terms[0][0]) or len(polynomial) > _MOST_FACTORED:
+    if len(terms) != 1 or any(terms[0][0]) or _volume(polynomial) > _MOST_VOLUME:
         return []
     return [factor.monic() for factor, _ in terms[0][1].numer.factor_list()[1]]
 
@@ -717,6 +727,7 @@ def _interval(context: _Context, expression: sp.Expr) -> Any:
 
 # --- Arrangements that follow the algebra --------------------------------------------------------------------------
 
+_T = TypeVar("_T")
 _Terms = tuple[tuple[tuple[int, ...], Any], ...]
 
 
@@ -752,9 +763,17 @@ def _arrangements(context: _Context, form: _Fraction) -> Iterator[_Plan]:
         for moved in _about_centres(form, product):
             yield from (functools.partial(_write, context, form, scaled) for scaled in _scaled(context, form, moved))
     if len(form.generators) == 1:
-        yield from _by_numerator(context, form, products)
-        yield from _by_parity(context, form)
-        yield from _by_division(context, form, products)
+        yield from _allowed(_by_numerator(context, form, products))
+        yield from _allowed(_by_parity(context, form))
+        yield from _allowed(_by_division(context, form, products))
+
+
+def _allowed(found: Iterator[_T]) -> Iterator[_T]:
+    """What is found before the coefficients grow too large."""
+    try:
+        yield from found
+    except _Refused:
+        return
 
 
 def _write(context: _Context, form: _Fraction, product: _Product, tape: _Tape) -> _Value:
@@ -813,7 +832,7 @@ def _form_terms(form: _Fraction, polynomial: Any) -> _Terms:
 
 def _factored(form: _Fraction, polynomial: Any) -> tuple[Any, list[tuple[Any, int]]]:
     """`(constant, factors)`; a polynomial too large to factor is its own factor."""
-    if len(polynomial) > _MOST_FACTORED:
+    if _volume(polynomial) > _MOST_VOLUME:
         return form.field(1), [(polynomial, 1)]
     number, factors = polynomial.factor_list()
     constant = form.field(number)
@@ -838,8 +857,11 @@ def _merged(factors: list[tuple[Any, int]]) -> list[list[tuple[Any, int]]]:
 def _about_centres(form: _Fraction, product: _Product) -> Iterator[_Product]:
     """The product as it is, then about each centre that rids a part of degree two or more of a term."""
     yield product
-    if len(form.generators) > 1:
-        return
+    if len(form.generators) == 1 and max((part.degree for part in product.parts), default=0) <= _MOST_MOVED:
+        yield from _allowed(_moved(form, product))
+
+
+def _moved(form: _Fraction, product: _Product) -> Iterator[_Product]:
     centres = [_centre(part, form.field) for part in product.parts if part.degree]
     for centre in list(dict.fromkeys(centre for centre in centres if centre))[:_MOST_CENTRES]:
         moved = [_about(part, centre, form.field) for part in product.parts]
@@ -858,9 +880,15 @@ def _about(part: _Part, centre: Any, field: Any) -> _Part:
     coefficients = _dense(part.terms, field)
     for done in range(len(coefficients)):
         for i in reversed(range(done, len(coefficients) - 1)):
-            coefficients[i] += centre * coefficients[i + 1]
+            coefficients[i] = _bounded(coefficients[i] + _bounded(centre * coefficients[i + 1]))
     terms = _sparse(coefficients)
     return replace(part, terms=terms, centre=centre) if len(terms) < len(part.terms) else part
+
+
+def _bounded(coefficient: Any) -> Any:
+    if max(_volume(coefficient.numer), _volume(coefficient.denom)) > _MOST_COEFFICIENT:
+        raise _Refused
+    return coefficient
 
 
 def _dense(terms: _Terms, field: Any) -> list[Any]:
@@ -988,12 +1016,14 @@ def _write_by_division(
 
 def _divided(a: list[Any], b: list[Any], field: Any) -> tuple[list[Any], list[Any]]:
     """Quotient and remainder, from degree 0 up."""
+    if len(a) > _MOST_MOVED:
+        raise _Refused
     quotient = [field(0)] * (len(a) - len(b) + 1)
     rest = list(a)
     for i in reversed(range(len(quotient))):
-        quotient[i] = rest[i + len(b) - 1] / b[-1]
+        quotient[i] = _bounded(rest[i + len(b) - 1] / b[-1])
         for j, number in enumerate(b):
-            rest[i + j] -= quotient[i] * number
+            rest[i + j] = _bounded(rest[i + j] - _bounded(quotient[i] * number))
     while rest and not rest[-1]:
         rest.pop()
     return quotient, rest

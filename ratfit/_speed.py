@@ -1,8 +1,8 @@
 """How much faster a fit is than the exact function: gamma, with the copy floor, in one run.
 
-Exact, fit and floor (`x + 1`: read a sample, write a sample, next to no work) run on the same array, each compiled and
-warm, in rounds of one call each. Rounds make the three share whatever else the machine does meanwhile, and a round's
-order changes from round to round, since a call runs in the cache that the one before it left behind.
+Exact, fit and floor (`x + 1`: read a sample, write a sample, next to no work) run on the same array, compiled, in
+rounds, so that the three share whatever else the machine does meanwhile. In a round each is called twice and timed the
+second time: none pays for what the run before it left in the caches and in the processor's clock.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ratfit._sampling import check_protocol, draw, setting
 BACKENDS: Mapping[str, str] = {"jax-cpu": "cpu", "jax-gpu": "gpu"}
 """Name of a backend -> JAX's name of the platform."""
 
-SECONDS = 1.0  # what the timed rounds of one measurement take together, as far as the least number of rounds allows
+SECONDS = 1.5  # what the timed rounds of one measurement take together, as far as the least number of rounds allows
 ROUNDS = (12, 600)  # the least and the most: two of every order; more than the most no longer narrow the interval
 RESAMPLES = 1000
 AT_FLOOR = 1.1  # a fit within 10 % of the floor is as fast as memory, however little it computes
@@ -75,7 +75,7 @@ def measure_speed(
     - `fit`, `parameters`, `reference`: as for `measure_error`.
     - `backend`: a name of `BACKENDS`.
     - `samples`, `seed`: the size and seed of the uniform sample that all three run on; `dtype`: their arithmetic.
-    - `repeats`: the number of rounds; left out, as many as fit into about a second.
+    - `repeats`: the number of rounds; left out, as many as fit into 1.5 s.
 
     **Fails** with `RatfitError` for a backend without a device here, and as `measure_error` does.
     See also: `measure_error`.
@@ -120,14 +120,11 @@ def _devices(platform: str) -> list[Any]:
 def _times(
     runs: Sequence[Callable[[Any], Any]], points: Any, dtype: str, repeats: int | None
 ) -> tuple[tuple[float, ...], ...]:
-    """The seconds of every run, one after the other, in each round."""
-    # Every order in turn: in a mere rotation each run would always follow the same other one.
+    """The seconds of every run, one after the other, in each round, in every order in turn."""
     orders = itertools.cycle(itertools.permutations(range(len(runs))))
     with precision(dtype):
-        for run in runs:
-            run(points).block_until_ready()  # compiles
         first = sum(_seconds(run, points) for run in runs)
-        rounds = repeats or round(min(max(SECONDS / first, ROUNDS[0]), ROUNDS[1]))
+        rounds = repeats or round(min(max(SECONDS / (2 * first), ROUNDS[0]), ROUNDS[1]))
         times = []
         for order in itertools.islice(orders, rounds):
             seconds = {place: _seconds(runs[place], points) for place in order}
@@ -136,6 +133,7 @@ def _times(
 
 
 def _seconds(run: Callable[[Any], Any], points: Any) -> float:
+    run(points).block_until_ready()  # the first of all compiles
     start = time.perf_counter()
     run(points).block_until_ready()
     return time.perf_counter() - start

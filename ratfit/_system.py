@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import sympy as sp
 
@@ -210,9 +211,7 @@ def _factor_series(factor: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> tu
 def taylor(expression: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> list[sp.Expr]:
     """Taylor coefficients 0 to `order`; RatfitError where one is not finite."""
     if expression.is_polynomial(x):
-        step = sp.Dummy("step")
-        powers = sp.Poly(expression.subs(x, at + step), step).all_coeffs()[::-1] if expression.has(x) else [expression]
-        return (powers + [sp.S.Zero] * (order + 1))[: order + 1]
+        return [*_shifted(expression, x, at), *[sp.S.Zero] * (order + 1)][: order + 1]
     found = []
     for k in range(order + 1):
         value = expression.subs(x, at) / sp.factorial(k)
@@ -221,6 +220,15 @@ def taylor(expression: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> list[s
         found.append(value)
         expression = sp.diff(expression, x)
     return found
+
+
+@lru_cache(maxsize=1000)
+def _shifted(polynomial: sp.Expr, x: sp.Symbol, at: sp.Expr) -> tuple[sp.Expr, ...]:
+    """All Taylor coefficients of a polynomial, kept because every order of derivative at a node asks for them."""
+    if not polynomial.has(x):
+        return (polynomial,)
+    step = sp.Dummy("step")
+    return tuple(sp.Poly(polynomial.subs(x, at + step), step).all_coeffs()[::-1])
 
 
 def polynomial_equations(system: System) -> list[sp.Expr]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any
 
 import mpmath
 import sympy as sp
 
-from ratfit._condition import Integral
+from ratfit._condition import Integral, describe
 from ratfit._field import Field, is_zero
 from ratfit._fit import Candidate, Checked
 from ratfit._generators import DIGITS
@@ -219,7 +220,7 @@ def _numerical(system: System, condition, expression: sp.Expr, values: Mapping[s
     x = system.problem.variable
     if isinstance(condition, Integral):
         (low, high), rest = integral_parts(system.problem, condition)
-        function = sp.lambdify(x, (condition.weight * expression).subs(values), "mpmath", cse=False)
+        function = _compiled((condition.weight * expression).subs(values), x)
         return mpmath.quad(function, [_mp(low.subs(values)), _mp(high.subs(values))]) + _mp(rest.subs(values))
     at = condition.at.subs(values)
     low, high = (end.subs(values) for end in system.problem.support())
@@ -228,11 +229,16 @@ def _numerical(system: System, condition, expression: sp.Expr, values: Mapping[s
     def moved(distance: mpmath.mpf) -> mpmath.mpf:
         return function(_mp(at) + distance)
 
-    function = sp.lambdify(x, expression.subs(values), "mpmath", cse=False)
+    function = _compiled(expression.subs(values), x)
     try:
         return mpmath.diff(moved, 0, condition.order, direction=side)
     except ZeroDivisionError:
         raise RatfitError("the candidate has a pole there") from None
+
+
+@lru_cache(maxsize=100)
+def _compiled(expression: sp.Expr, x: sp.Symbol) -> Callable[[mpmath.mpf], mpmath.mpf]:
+    return sp.lambdify(x, expression, "mpmath", cse=False)
 
 
 def _mp(number: sp.Expr) -> mpmath.mpf:
@@ -244,19 +250,20 @@ def _mp(number: sp.Expr) -> mpmath.mpf:
 
 
 def _failure(system: System, checked: tuple[Checked, ...], common: sp.Expr) -> str:
-    """The first condition that does not hold, in words."""
+    """The conditions that do not hold, in words."""
+    failed = []
     for c in checked:
         if c.holds:
             continue
-        what = f"{c.condition.kind} at {c.condition.place}"
-        if not isinstance(c.condition, Integral) and c.condition.order > 1:  # type: ignore[attr-defined]
-            what = f"{what} (order {c.condition.order})"  # type: ignore[attr-defined]
+        what = describe(c.condition)
         if c.holds is None:
             return f"{what}: exact and numerical results disagree; it is not accepted undecided"
-        cancelled = f"the factor {common} cancels, and then " if common != 1 else ""
-        found = f"is off by {c.residual:.3g}" if c.residual is not None else "has no finite value"
-        return f"{cancelled}the condition {what} (should be {c.demand}) {found}"
-    return ""
+        found = f"off by {c.residual:.3g}" if c.residual is not None else "no finite value there"
+        failed.append(f"{what} should be {c.demand} ({found})")
+    if not failed:
+        return ""
+    cancelled = f"the factor {common} cancels, then " if common != 1 else ""
+    return f"{cancelled}{'; '.join(failed)}"
 
 
 def _pole(system: System, numerator: sp.Expr, denominator: sp.Expr, free: Mapping[sp.Symbol, Any]) -> str:
@@ -283,7 +290,9 @@ def _real_zeros(denominator: sp.Expr, x: sp.Symbol, low: sp.Expr, high: sp.Expr)
     return found
 
 
+@lru_cache(maxsize=100)
 def _polynomial_roots(polynomial: sp.Expr, x: sp.Symbol) -> list[mpmath.mpc]:
+    """The complex roots at DIGITS digits, kept because coprimality and poles both ask for them."""
     coefficients = [_mp(c) for c in sp.Poly(polynomial, x).all_coeffs()]
     size = max(map(abs, coefficients))
     while coefficients and abs(coefficients[0]) < mpmath.mpf("1e-45") * size:
@@ -291,7 +300,7 @@ def _polynomial_roots(polynomial: sp.Expr, x: sp.Symbol) -> list[mpmath.mpc]:
     if len(coefficients) < 2:
         return []
     try:
-        return [mpmath.mpc(r) for r in mpmath.polyroots(coefficients, maxsteps=200, extraprec=2 * mpmath.mp.prec)]
+        return [mpmath.mpc(r) for r in mpmath.polyroots(coefficients, maxsteps=200, extraprec=mpmath.mp.prec)]
     except mpmath.libmp.NoConvergence:
         # Multiple roots converge slowly; the accuracy left is still far below the tolerance of the search.
         return [mpmath.mpc(r) for r in mpmath.polyroots(coefficients, maxsteps=2000, extraprec=20 * mpmath.mp.prec, error=False)]
@@ -302,7 +311,7 @@ def _scanned_roots(base: sp.Expr, x: sp.Symbol, ends: list[mpmath.mpf]) -> list[
     if not base.has(x):
         return []
     low, high = max(ends[0], mpmath.mpf(-1000)), min(ends[1], mpmath.mpf(1000))
-    function = sp.lambdify(x, base, "mpmath", cse=False)
+    function = _compiled(base, x)
     points = [low + (high - low) * i / (SCAN - 1) for i in range(SCAN)]
     values = [function(p) for p in points]
     found = [p for p, v in zip(points, values, strict=True) if v == 0]

@@ -15,7 +15,7 @@ from ratfit._condition import Derivative
 from ratfit._form import Rational
 from ratfit._parse import RatfitError, nearest, parse_expression
 from ratfit._problem import Problem
-from ratfit._problem_file import problem_of, read_problem, toml_tables
+from ratfit._problem_file import problem_of, read_problem, to_tables, toml_tables
 
 MAX_DEGREE = 20
 """Largest --degree of a card that takes one: 2*20 + 1 conditions."""
@@ -48,6 +48,11 @@ class Card:
     @property
     def name(self) -> str:
         return self.problem.name
+
+    def to_json_object(self) -> dict[str, Any]:
+        """The card as JSON holds it: the tables of its problem file, and what was published."""
+        about = {k: getattr(self, k) for k in ("title", "aliases", "source", "place", "note", "epsilon", "gamma")}
+        return {**to_tables(self.problem), **about, "published": self.printed, "operations": self.operations}
 
     def with_degree(self, degree: int) -> Card:
         """The card at another degree n: form [n/n], derivatives 0 to 2n. Raises RatfitError where it takes none."""
@@ -127,6 +132,11 @@ def find_problem(text: str) -> Problem:
     if is_file_name(text):
         return read_problem(text)
     return card(text).problem
+
+
+def is_known(text: str) -> bool:
+    """Whether a text names a whole problem: a card, an alias or a file."""
+    return text in names() or text in _aliases() or is_file_name(text)
 
 
 def is_file_name(text: str) -> bool:

@@ -1,0 +1,84 @@
+"""Rows to measure: a fit at each setting of its parameters, against its target and each reference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ratfit._error import measure_error
+from ratfit._fit import Fit
+from ratfit._record import Record
+from ratfit._sampling import setting
+from ratfit._speed import measure_speed
+
+
+@dataclass(frozen=True)
+class Job:
+    """One row to measure: the fit against its target (reference None) or a reference, at values of the parameters."""
+
+    fit: Fit
+    parameters: Mapping[str, float]
+    reference: str | None
+
+    @property
+    def name(self) -> str:
+        """The name of the row: the problem's, and after a colon the reference's."""
+        return self.fit.problem.name + (f":{self.reference}" if self.reference else "")
+
+
+def jobs(fit: Fit, settings: Sequence[Mapping[str, sp.Expr | float]] = ()) -> list[Job]:
+    """Every row of a fit: its target, when it has one, and its references, at each of the settings.
+
+    Without settings the parameters take the low end, the middle and the high end of their ranges; values that a
+    reference gives are left to it.
+    """
+    problem = fit.problem
+    against = ([None] if problem.target is not None else []) + [r.name for r in problem.references]
+    given = {r.name: {s.name for s in r.parameters} for r in problem.references}
+    found = []
+    for reference in against:
+        for values in settings or _ends_and_middle(fit):
+            kept = {n: float(v) for n, v in values.items() if n not in given.get(reference or "", set())}
+            job = Job(fit, kept, reference)
+            if job not in found:
+                found.append(job)
+    return found
+
+
+def _ends_and_middle(fit: Fit) -> list[dict[str, float]]:
+    parameters = fit.problem.parameters
+    if not parameters:
+        return [{}]
+    return [{p.name: float(low + share * (high - low)) for p, (low, high) in parameters.items()} for share in (0, sp.Rational(1, 2), 1)]
+
+
+def measure(
+    job: Job, *, samples: int, seed: int, sampling: str, dtype: str, backend: str, speed: bool = True
+) -> Record:
+    """Measures one row; without `speed` its times and gamma are None."""
+    error = measure_error(
+        job.fit, samples=samples, sampling=sampling, seed=seed, dtype=dtype, parameters=job.parameters, reference=job.reference
+    )
+    common = {
+        "name": job.name, "parameters": error.parameters, "samples": samples, "seed": seed, "sampling": sampling,
+        "dtype": dtype, "backend": backend, "regime": "jitted arrays", "epsilon": error.epsilon,
+        "nonfinite": error.nonfinite, "worst": error.worst,
+    }  # fmt: skip
+    if not speed:
+        times = dict.fromkeys(("exact_s", "fit_s", "floor_s", "gamma", "gamma_low", "gamma_high"))
+        return Record(**common, **times, flags="", note="eps only")  # type: ignore[arg-type]
+    timed = measure_speed(
+        job.fit, backend=backend, samples=samples, seed=seed, dtype=dtype, parameters=job.parameters, reference=job.reference
+    )
+    return Record(
+        **common, flags=timed.flags, exact_s=timed.exact_s, fit_s=timed.fit_s, floor_s=timed.floor_s,
+        gamma=timed.gamma, gamma_low=timed.gamma_low, gamma_high=timed.gamma_high, note=timed.note,
+    )  # type: ignore[arg-type]  # fmt: skip
+
+
+def parameters_of(job: Job) -> dict[str, float]:
+    """All values that a row will state, those of its reference too; what --resume compares."""
+    return setting(job.fit, job.parameters, job.reference).parameters
+

@@ -1,0 +1,1 @@
+"""Fits and records -> text, Markdown."""

@@ -1,0 +1,93 @@
+"""`ratfit bench`: rows measured one by one, written as soon as they are done, shown as a table."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from ratfit._bench import Job, jobs, measure, parameters_of
+from ratfit._fit import Fit
+from ratfit._record import Record, Row, append_row, machine, read_rows, same_measurement
+from ratfit._sampling import check_protocol
+from ratfit._target import exact
+from ratfit.gallery import Card
+
+COLUMNS = ("peak_mean", "peak_rms", "relative_mean", "relative_max", "absolute_max")
+"""The definitions of eps that a table shows; the record holds all of them."""
+
+
+@dataclass(frozen=True)
+class Measuring:
+    """How to measure: the same for every row of a run."""
+
+    samples: int
+    seed: int
+    sampling: str
+    dtype: str
+    backend: str
+
+
+def run_bench(
+    fit: Fit, card: Card | None, given: Mapping[str, str], how: Measuring, out: str | None, resume: bool, format_: str
+) -> str:
+    """Measures every row of a fit and returns the text to print; with `out` rows are appended as they are done."""
+    check_protocol(how.sampling, how.samples, how.seed, how.dtype)
+    values = {name: float(exact(text, f"--set {name}")) for name, text in given.items()}
+    settings = [values] if values else list(card.settings) if card else []
+    rows = list(_rows(jobs(fit, settings), how, out, resume))
+    if format_ == "json":
+        return json.dumps({"machine": machine(), "rows": rows}, indent=2, ensure_ascii=False)
+    return table(rows)
+
+
+def _rows(found: Sequence[Job], how: Measuring, out: str | None, resume: bool) -> Iterator[Row]:
+    done = read_rows(out) if out and resume else []
+    for number, job in enumerate(found, 1):
+        progress(f"{number}/{len(found)} {job.name} {dict(job.parameters)}")
+        known = next((r for r in done if same_measurement(r, name=job.name, parameters=parameters_of(job), **asdict(how))), None)
+        if known is not None:
+            yield known
+            continue
+        record = measure(job, **asdict(how))
+        if out:
+            append_row(Path(out), record)
+        yield record.to_json_object()
+    progress("")
+
+
+def progress(text: str) -> None:
+    """One line on standard error that overwrites itself; nothing where nobody looks."""
+    if sys.stderr.isatty():
+        print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+
+
+def table(rows: Sequence[Row]) -> str:
+    """The rows as an aligned table: eps as fractions, gamma with its interval."""
+    head = ("problem", "parameters", "dtype", *COLUMNS, "worst at", "nonfinite", "gamma", "fit/floor", "note")
+    body = [_cells(row) for row in rows]
+    widths = [max(len(line[i]) for line in [head, *body]) for i in range(len(head))]
+    return "\n".join("  ".join(cell.ljust(w) for cell, w in zip(line, widths, strict=True)).rstrip() for line in [head, *body])
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    parameters = " ".join(f"{n}={short(v)}" for n, v in row["parameters"].items())
+    eps = (short(row["epsilon"][d]) for d in COLUMNS)
+    at = short(row["worst"]["at"])
+    floor = row["fit_s"] / row["floor_s"] if row["fit_s"] and row["floor_s"] else None
+    return (row["name"], parameters, row["dtype"], *eps, at, str(row["nonfinite"]), gamma(row), short(floor), row["note"])
+
+
+def gamma(row: Row | Record) -> str:
+    """gamma with its interval, as in "12.3 [11.9, 12.8]"."""
+    row = row.to_json_object() if isinstance(row, Record) else row
+    if row["gamma"] is None:
+        return "-"
+    return f"{short(row['gamma'])} [{short(row['gamma_low'])}, {short(row['gamma_high'])}]"
+
+
+def short(value: float | None) -> str:
+    """A number to three digits; a dash for none."""
+    return "-" if value is None else f"{value:.3g}"

@@ -1,0 +1,134 @@
+"""A fit as text that a person likes to read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from ratfit._condition import describe
+from ratfit._field import is_zero
+from ratfit._fit import Checked, Fit
+from ratfit._problem import Problem
+from ratfit._problem_file import form_table
+from ratfit.gallery import Card
+
+WIDTH = 100
+MARKS = {True: ("✓", "ok"), False: ("✗", "NO"), None: ("?", "??")}
+
+
+def fit_text(fit: Fit, card: Card | None = None, *, unicode: bool = True) -> str:
+    """The whole fit: formula, conditions ticked off, what was rejected and why, the cost, the published formula."""
+    lines = [f"{fit.problem.name}: {_headline(fit)}", ""]
+    if fit.problem.target is not None:
+        lines += [f"  target      {fit.problem.target.expression}"]
+    lines += [f"  domain      {fit.problem.variable} in [{fit.problem.domain[0]}, {fit.problem.domain[1]}]"]
+    if fit.problem.parameters:
+        ranges = ", ".join(f"{p} in [{p.low}, {p.high}]" for p in fit.problem.parameters)
+        lines += [f"  parameters  {ranges}"]
+    if fit.equations:
+        lines += ["", "  equations", *(f"    {e}" for e in fit.equations)]
+    if fit.expression is not None:
+        lines += _formula_lines(fit, unicode)
+    lines += _candidate_lines(fit)
+    if fit.conditions:
+        lines += ["", "  conditions", *(f"    {_condition_line(c, unicode)}" for c in fit.conditions)]
+    if fit.rejected:
+        lines += ["", "  rejected", *(f"    {c.expression}\n      {c.reason}" for c in fit.rejected)]
+    if fit.reasons and not fit.candidates:
+        lines += ["", "  why", *(f"    {reason}" for reason in fit.reasons)]
+    if fit.expression is not None:
+        lines += ["", f"  cost        {_cost_text(fit)}"]
+    if card is not None:
+        lines += _card_lines(fit, card)
+    return "\n".join(lines)
+
+
+def _headline(fit: Fit) -> str:
+    words = {
+        "unique": "one answer",
+        "family": f"a family, {', '.join(map(str, fit.free))} free",
+        "several": f"{len(fit.candidates)} answers",
+        "inconsistent": "no answer, the conditions clash",
+        "rejected": "no answer, every candidate was rejected",
+        "timeout": "no answer in time",
+    }
+    return f"{words[fit.status]} ({fit.route} route)"
+
+
+def _formula_lines(fit: Fit, unicode: bool) -> list[str]:
+    pretty = sp.pretty(fit.expression, use_unicode=unicode, num_columns=WIDTH, wrap_line=True)
+    lines = ["", *(f"    {line}" for line in pretty.splitlines()), "", f"  fit         {fit.expression}"]
+    if fit.problem.form.support is not None:
+        low, high = fit.problem.form.support
+        lines.append(f"  support     [{low}, {high}], {fit.problem.form.outside} outside")
+    for symbol, (low, high) in fit.free.items():
+        lines.append(f"  free        {symbol}, {low} < {symbol} < {high}")
+    for symbol, value in fit.choice.items():
+        lines.append(f"  choice      {symbol} = {value}: {fit.chosen}")
+    return lines
+
+
+def _candidate_lines(fit: Fit) -> list[str]:
+    return [f"  or          {c.expression}" for c in fit.candidates[1:]]
+
+
+def _condition_line(checked: Checked, unicode: bool) -> str:
+    mark = MARKS[checked.holds][0 if unicode else 1]
+    return f"{mark} {describe(checked.condition):<28} = {checked.demand}"
+
+
+def _cost_text(fit: Fit) -> str:
+    counted = [f"{count} {name}" for name, count in fit.cost.as_dict().items() if count]
+    return f"{', '.join(counted) or 'nothing'} a sample (work on parameters alone not counted)"
+
+
+def _card_lines(fit: Fit, card: Card) -> list[str]:
+    lines = ["", f"  published   {card.printed}", f"              {card.source}, {card.place}"]
+    if fit.expression is not None:
+        lines.append(f"              {agreement(fit, card)}")
+    return lines + ([f"  note        {card.note}"] if card.note else [])
+
+
+def agreement(fit: Fit, card: Card) -> str:
+    """Whether the derived expression equals the published one, symbolically."""
+    return "symbolically equal" if equals_published(fit, card) else "NOT equal to what was derived"
+
+
+def equals_published(fit: Fit, card: Card) -> bool:
+    """Whether some accepted candidate is the published formula, as functions of variable, parameters and free names."""
+    for candidate in fit.candidates:
+        by_name = {s.name: s for s in candidate.expression.free_symbols}
+        published = card.published.xreplace({s: by_name.get(s.name, s) for s in card.published.free_symbols})
+        if is_zero(candidate.expression - published):
+            return True
+    return False
+
+
+def gallery_text(shown: Sequence[Card]) -> str:
+    """The list of problems, a line each."""
+    rows = [(c.name, " ".join(c.aliases), c.title, f"{c.source}, {c.place}") for c in shown]
+    widths = [max(len(row[i]) for row in rows) for i in range(3)]
+    return "\n".join("  ".join([*(row[i].ljust(widths[i]) for i in range(3)), row[3]]) for row in rows)
+
+
+def card_text(card: Card) -> str:
+    """One card: the problem as it is understood, and what was published."""
+    lines = [f"{card.name}: {card.title}", "", problem_text(card.problem), "", f"published   {card.printed}"]
+    lines.append(f"            {card.source}, {card.place}")
+    return "\n".join(lines + ([f"note        {card.note}"] if card.note else []))
+
+
+def problem_text(problem: Problem) -> str:
+    """A problem as it was understood."""
+    x = problem.variable
+    lines = [f"target      {problem.target.expression if problem.target else 'none: every condition states equals'}"]
+    lines += [f"domain      {x} in [{problem.domain[0]}, {problem.domain[1]}]"]
+    lines += [f"parameter   {p} in [{p.low}, {p.high}]" for p in problem.parameters]
+    lines += [f"form        {', '.join(f'{k} = {v}' for k, v in form_table(problem.form).items())}"]
+    for condition in problem.conditions:
+        demand = "what the target does" if condition.equals is None else condition.equals
+        lines.append(f"condition   {describe(condition)} = {demand}")
+    lines += [f"choice      {name} = {value}" for name, value in problem.choice.items()]
+    lines += [f"reference   {r.name} = {r.expression}" for r in problem.references]
+    return "\n".join(lines)

@@ -18,15 +18,14 @@ from ratfit._parse import RatfitError as RatfitError
 from ratfit._problem import Problem as Problem
 from ratfit._problem import Reference as Reference
 from ratfit._problem_file import read_problem as read_problem
-from ratfit._schedule import schedule as schedule
 from ratfit._target import Parameter as Parameter
 from ratfit._target import Target as Target
 from ratfit._target import parameter as parameter
 
 __version__ = "0.1.0"
 
-# What needs JAX is loaded on first use: `import ratfit` stays as light as sympy.
-_LATER = {"measure_error": "ratfit._error", "measure_speed": "ratfit._speed"}
+# What needs JAX, or is long and not always needed, is loaded on first use: `import ratfit` stays as light as sympy.
+_LATER = {"measure_error": "ratfit._error", "measure_speed": "ratfit._speed", "schedule": "ratfit._schedule"}
 
 
 def __getattr__(name: str) -> Any:

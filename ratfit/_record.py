@@ -199,9 +199,9 @@ def read_rows(path: str | os.PathLike[str]) -> list[Row]:
 
     **Fails** with `RatfitError`, which names the line, for a file that holds anything else.
     """
-    if not Path(path).exists():
-        return []
     with _explained(path):
+        if not Path(path).exists():
+            return []
         *lines, last = Path(path).read_bytes().split(b"\n")
     rows = []
     for number, line in enumerate(lines, 1):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
+import numbers
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -80,9 +81,11 @@ def _exact(problem: Any, reference: str | None) -> tuple[sp.Expr, Mapping[sp.Sym
 def _values(problem: Any, asked: Mapping[str, float], given: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, float]:
     symbols = {symbol.name: symbol for symbol in (*problem.parameters, *given)}
     known = ", ".join(symbols) or "none"
-    for name in asked:
+    for name, value in asked.items():
         if name not in symbols:
             raise RatfitError(f"no parameter {name!r}, there is: {known}{nearest(name, symbols)}")
+        if not (isinstance(value, numbers.Real) or (isinstance(value, sp.Expr) and value.is_extended_real)):
+            raise RatfitError(f"{name} = {value!r}: a number is needed")
     values = {symbols[name]: float(value) for name, value in asked.items()}
     for symbol, expression in given.items():
         # A reference may write one of its values in terms of others, its reflectance f in terms of its index n.

@@ -225,8 +225,8 @@ class _Tape:
     def add(self, a: _Value, b: _Value) -> _Value:
         if self.is_constant(a.atom) and self.is_constant(b.atom):
             return self.constant(a.signed + b.signed)
-        if a.atom.is_zero or b.atom.is_zero:
-            return b if a.atom.is_zero else a
+        if sp.S.Zero in (a.atom, b.atom):
+            return b if a.atom == 0 else a
         if a.atom == b.atom:
             return self.mul(_Value(sp.Integer(2)), a) if a.negative == b.negative else _Value(sp.S.Zero)
         if a.negative == b.negative:
@@ -254,7 +254,7 @@ class _Tape:
         first, second = self._ordered(a.atom, b.atom)
         if self.is_constant(second):
             return self.constant(a.signed * b.signed)
-        if first.is_zero:
+        if first == sp.S.Zero:
             return _Value(sp.S.Zero)
         if first == sp.S.One:
             return _Value(second, negative)
@@ -270,8 +270,8 @@ class _Tape:
     def div(self, a: _Value, b: _Value) -> _Value:
         if self.is_constant(b.atom):
             return self.mul(a, self.constant(1 / b.signed))
-        if a.atom.is_zero or a.atom == b.atom:
-            return _Value(sp.S.Zero if a.atom.is_zero else sp.S.One, a.negative != b.negative)
+        if a.atom in (sp.S.Zero, b.atom):
+            return _Value(sp.S.One if a.atom == b.atom else sp.S.Zero, a.negative != b.negative)
         return _Value(self._step("div", a.atom, b.atom), a.negative != b.negative)
 
     def power(self, base: _Value, exponent: int) -> _Value:

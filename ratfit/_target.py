@@ -196,13 +196,42 @@ def _one_sided(expression: sp.Expr, variable: sp.Symbol, at: sp.Expr, side: int,
     derivative = sp.diff(moved, distance, order) * side**order
     where = f"the target's derivative of order {order}" if order else "the target's value"
     try:
-        value = sp.limit(derivative, distance, 0, "+")
+        value = _limit_by_parts(derivative, distance)
+        value = sp.limit(derivative, distance, 0, "+") if value is None else value
     except (NotImplementedError, ValueError, RecursionError):
         raise RatfitError(f"{where} at {variable} = {at} is not found; state it with equals") from None
     if value.is_infinite or value.has(sp.nan, sp.zoo, sp.oo, sp.AccumBounds, sp.Limit):
         raise RatfitError(f"{where} at {variable} = {at} is not finite; state another condition there")
     _check_limit(derivative, distance, value, f"{where} at {variable} = {at}")
     return value
+
+
+def _limit_by_parts(expression: sp.Expr, distance: sp.Symbol) -> sp.Expr | None:
+    """The limit at distance 0+ part by part, where every shared part tends to a sure limit; None where one does not.
+
+    A tenth of the time of a general limit: g/(g + 1) with g = sqrt(pi*h)*(2 - erfc(sqrt(h))) is three small ones.
+    """
+    parts, (last,) = sp.cse(expression)
+    limits: dict[sp.Symbol, sp.Expr] = {}
+    for symbol, part in [*parts, (None, last)]:
+        value = _limit_of_part(part, limits, distance)
+        if value is None or symbol is None:
+            return value
+        limits[symbol] = value
+    return None
+
+
+def _limit_of_part(part: sp.Expr, limits: Mapping[sp.Symbol, sp.Expr], distance: sp.Symbol) -> sp.Expr | None:
+    value = part.subs(limits).subs(distance, 0)
+    if not value.has(sp.nan, sp.zoo, sp.AccumBounds):
+        return value
+    infinite = [s for s in part.free_symbols if limits.get(s) in (sp.oo, -sp.oo)]
+    moving = [s for s in part.free_symbols if s == distance or s in limits]
+    if len(moving) != 1 or not part.is_rational_function(moving[0]):
+        return None
+    if moving[0] == distance:
+        return sp.limit(part, distance, 0, "+")
+    return sp.limit(part, moving[0], limits[moving[0]]) if infinite else None
 
 
 def _check_limit(derivative: sp.Expr, distance: sp.Symbol, value: sp.Expr, where: str) -> None:

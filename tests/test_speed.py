@@ -134,5 +134,5 @@ def test_refusals_say_the_remedy():
 
 @pytest.mark.skipif(bool(_speed._devices("gpu")), reason="this machine has a GPU")
 def test_a_backend_without_a_device_names_those_with_one():
-    with pytest.raises(RatfitError, match="no device for jax-gpu .* there is one for: jax-cpu"):
+    with pytest.raises(RatfitError, match=r"no device for jax-gpu .* there is one for: jax-cpu"):
         measure_speed(SMITH, backend="jax-gpu", parameters={"k": 0.5})

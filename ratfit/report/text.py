@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import sympy as sp
-
 from ratfit._condition import describe
 from ratfit._field import is_zero
 from ratfit._fit import Checked, Fit
 from ratfit._problem import Problem
 from ratfit._problem_file import form_table
 from ratfit.gallery import Card
+from ratfit.report.unicode import lines as formula_lines
 
-WIDTH = 100
 MARKS = {True: ("✓", "ok"), False: ("✗", "NO"), None: ("?", "??")}
 
 
@@ -57,8 +55,8 @@ def _headline(fit: Fit) -> str:
 
 
 def _formula_lines(fit: Fit, unicode: bool) -> list[str]:
-    pretty = sp.pretty(fit.expression, use_unicode=unicode, num_columns=WIDTH, wrap_line=True)
-    lines = ["", *(f"    {line}" for line in pretty.splitlines()), "", f"  fit         {fit.expression}"]
+    drawn = [f"    {line}" for line in formula_lines(fit.expression)] if unicode else []
+    lines = ["", *drawn, *([""] if drawn else []), f"  fit         {fit.expression}"]
     if fit.problem.form.support is not None:
         low, high = fit.problem.form.support
         lines.append(f"  support     [{low}, {high}], {fit.problem.form.outside} outside")

@@ -27,9 +27,9 @@ from sympy.polys.fields import FracField
 from sympy.polys.rings import PolyRing
 
 _CLAMPS = (sp.Min, sp.Max, sp.Abs)
-_MOST_TERMS = 400  # of a product of two polynomials
-_MOST_VOLUME = 1500  # monomials up to the degrees of a polynomial that is worth factoring
-_MOST_COEFFICIENT = 200  # the same for a coefficient
+_MOST_TERMS = 60  # of a polynomial
+_MOST_VOLUME = 300  # monomials up to the degrees of a polynomial that is worth factoring
+_MOST_COEFFICIENT = 100  # the same for a coefficient
 _MOST_MOVED = 16  # degree of a polynomial that is moved to a centre, or divided
 _MOST_GENERATORS = 9
 _MOST_DEGREE = 64
@@ -521,6 +521,7 @@ class _Fraction:
     constants: tuple[sp.Expr, ...]
     field: Any
     granted: frozenset[Any]
+    numbers: dict[Any, sp.Expr | None] = field(default_factory=dict)
 
 
 _Key = tuple[sp.Expr, sp.Expr]
@@ -623,9 +624,15 @@ def _unit(key: _Key, multiples: list[sp.Rational]) -> sp.Rational:
 
 
 def _times(a: Any, b: Any) -> Any:
-    if len(a) * len(b) > _MOST_TERMS:
+    if len(a) * len(b) > 4 * _MOST_TERMS:
         raise _Refused
-    return a * b
+    return _short(a * b)
+
+
+def _short(polynomial: Any) -> Any:
+    if len(polynomial) > _MOST_TERMS:
+        raise _Refused
+    return polynomial
 
 
 def _raised(a: Any, exponent: int) -> Any:
@@ -643,7 +650,7 @@ def _added(a: tuple[Any, Any], b: tuple[Any, Any]) -> tuple[Any, Any]:
     if max(_volume(a[1]), _volume(b[1])) > _MOST_VOLUME:
         raise _Refused
     _, left, right = a[1].cofactors(b[1])
-    return _times(a[0], right) + _times(b[0], left), _times(a[1], right)
+    return _short(_times(a[0], right) + _times(b[0], left)), _times(a[1], right)
 
 
 def _multiplied(a: tuple[Any, Any], b: tuple[Any, Any]) -> tuple[Any, Any]:
@@ -673,10 +680,13 @@ def _constant_factors(polynomial: Any, count: int, field: Any) -> list[Any]:
 
 def _number(context: _Context, form: _Fraction, coefficient: Any) -> sp.Expr:
     """A coefficient as an expression, unless it divides by what may be zero."""
-    for factor, _ in coefficient.denom.factor_list()[1]:
-        if factor.monic() not in form.granted and _sign(context, factor.as_expr(*form.constants)) is None:
-            raise _Refused
-    return coefficient.as_expr(*form.constants)
+    if coefficient not in form.numbers:
+        factors = [factor for factor, _ in coefficient.denom.factor_list()[1] if factor.monic() not in form.granted]
+        known = all(_sign(context, factor.as_expr(*form.constants)) for factor in factors)
+        form.numbers[coefficient] = coefficient.as_expr(*form.constants) if known else None
+    if form.numbers[coefficient] is None:
+        raise _Refused
+    return form.numbers[coefficient]
 
 
 def _root(context: _Context, form: _Fraction, coefficient: Any, degree: int) -> tuple[int, sp.Expr]:

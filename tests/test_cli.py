@@ -1,0 +1,315 @@
+"""The command line: its contract, and that bad input is one line and exit status 2."""
+
+import json
+import re
+
+import pytest
+
+from ratfit._parse import parse_expression
+from ratfit.cli import main
+from ratfit.gallery import cards
+
+SINE = ["sin(x)", "--on", "0", "pi/2", "--form", "2/1", "--value", "0", "--derivative", "0"]
+SINE += ["--value", "pi/2", "--derivative", "pi/2"]
+EASY = ["--on", "0", "1", "--form", "1/1", "--value", "0"]
+
+
+@pytest.fixture
+def run(capsys):
+    def run(*arguments):
+        with pytest.raises(SystemExit) as stop:
+            main(list(arguments))
+        out, err = capsys.readouterr()
+        return stop.value.code, out, err
+
+    return run
+
+
+def problem_file(tmp_path, **changes):
+    """A good problem file, with some of its lines replaced; a line of None is left out."""
+    lines = {
+        "name": 'name = "test"',
+        "target": 'target = "exp(x)"',
+        "variable": 'variable = "x"',
+        "domain": 'domain = ["0", "1"]',
+        "form": "[form]\nnumerator = 1\ndenominator = 1",
+        "condition": '[[condition]]\nkind = "value"\nat = "0"',
+    }
+    path = tmp_path / "problem.toml"
+    path.write_text("\n".join(line for line in (lines | changes).values() if line is not None) + "\n")
+    return str(path)
+
+
+# (arguments, a fragment of the one line that must be printed)
+BAD = [
+    (["derive", "smoth"], "smith"),
+    (["derive", "eq18"], "eq19"),
+    (["derive"], "which problem?"),
+    (["derive", "eq12", "eq19"], "one problem at a time"),
+    (["derive", "eq12", "--vlaue", "0"], "--value"),
+    (["derive", "eq12", "--value", "0"], "completes an expression"),
+    (["derive", "eq12", "--route", "straight"], "known: auto"),
+    (["derive", "eq21", "--route", "linear"], "not linear"),
+    (["derive", "eq19", "--route", "power"], "does not serve"),
+    (["derive", "eq12", "--timeout", "0"], "--timeout"),
+    (["derive", "eq12", "--timeout", "nan"], "--timeout"),
+    (["derive", "eq12", "--timeout"], "requires an argument"),
+    (["derive", "eq12", "--format", "yaml"], "json"),
+    (["derive", "eq12", "--degree", "3"], "takes no degree"),
+    (["derive", "pade-exp", "--degree", "0"], "from 1 to"),
+    (["derive", "pade-exp", "--degree", "1000"], "from 1 to"),
+    (["derive", "pade-exp", "--degree", "two"], "valid integer"),
+    (["derive", "eq15", "--set", "n=2"], "2 < n"),
+    (["derive", "eq15", "--set", "n"], "n=6"),
+    (["derive", "eq15", "--set", "k=3"], "not free"),
+    (["derive", "eq15", "--set", "n=__import__('os')"], "choice n"),
+    (["derive", "sin(x)", "--form", "2/1", "--value", "0"], "--on"),
+    (["derive", "sin(x)", "--on", "1", "0", "--form", "1/1", "--value", "0"], "reversed"),
+    (["derive", "sin(x)", "--on", "1", "1", "--form", "1/1", "--value", "1"], "empty"),
+    (["derive", "sin(x)", "--on", "0", "1", "--form", "1/1"], "conditions are needed"),
+    (["derive", "sin(x)", "--on", "0", "1", "--form", "1/x", "--value", "0"], "degrees"),
+    (["derive", "sin(x)", "--on", "0", "1", "--form", "99/1", "--value", "0"], "degree"),
+    (["derive", "sin(x)", "--on", "0", "1", "--value", "0"], "give the form"),
+    (["derive", "sin(x)", "--on", "0", "1", "--form", "1/1", "--value", "2"], "outside the domain"),
+    (["derive", "sin(x)", "--on", "0", "1", "--form", "1/1", "--value", "oo"], "finite"),
+    (["derive", "sin(x)", "--on", "0", "1", "--form", "1/1", "--value", "0;equals=oo"], "finite"),
+    (["derive", "sin(x)", "--on", "0", "1", "--form", "1/1", "--derivative", "0;order=-1"], "whole number"),
+    (["derive", "sin(x)", "--on", "0", "1", "--form", "1/1", "--derivative", "0;order=1.5"], "whole number"),
+    (["derive", "sin(x)", "--on", "0", "1", "--form", "1/1", "--derivative", "0;ordre=1"], "order="),
+    (["derive", "sin(x)", "--on", "0", "1", "--form", "1/1", "--integral", "weight=0"], "weight of zero"),
+    (["derive", "sin(k*x)", *EASY], "k"),
+    (["derive", "sin(k*x)", "--variable", "x", *EASY], "k"),
+    (["derive", "x.real", *EASY], "'.'"),
+    (["derive", "__import__('os').system('true')", *EASY], "ratfit:"),
+    (["derive", "9**9**9**9", *EASY], "ratfit:"),
+    (["derive", "(lambda: 1)()", *EASY], "ratfit:"),
+    (["derive", "x+" * 1500 + "x", *EASY], "2000"),
+    (["derive", "(" * 300 + "x" + ")" * 300, *EASY], "nest"),
+    (["derive", "-", *EASY], "ratfit:"),
+    (["derive", "exp(x)", "--parameter", "m=1", *EASY], "range"),
+    (["derive", "exp(m*x)", "--parameter", "m=1:0", *EASY], "low < high"),
+    (["derive", "exp(x)", "--parameter", "sin=0:1", *EASY], "reserved"),
+    (["derive", "exp(x)", "--let", "pi=3", *EASY], "reserved"),
+    (["derive", "exp(x)", "--variable", "E", *EASY], "reserved"),
+    (["derive", "exp(x)", "--parity", "strange", *EASY], "odd or even"),
+    (["derive", "exp(x)", "--factor", "0", *EASY], "factor of zero"),
+    (["derive", "no-such-file.toml"], "no such file"),
+    (["derive", "/"], "directory"),
+    (["derive", "eq19", "--out", "/nowhere/at/all.json"], "folder"),
+    (["bench", "eq12", "--samples", "0"], "samples"),
+    (["bench", "eq12", "--samples", "-5"], "samples"),
+    (["bench", "eq12", "--samples", "many"], "valid integer"),
+    (["bench", "eq12", "--dtype", "float16"], "float32"),
+    (["bench", "eq12", "--sampling", "unifrom"], "uniform"),
+    (["bench", "eq12", "--backend", "abacus"], "jax-cpu"),
+    (["bench", "eq19", "--set", "m=3"], "range"),
+    (["bench", "eq12", "--resume"], "--out"),
+    (["paper", "--samples", "0"], "samples"),
+    (["paper", "--out", "/proc/nowhere"], "--out"),
+    (["gallery", "smiht"], "smith"),
+    (["gallery", "--format", "toml"], "name it"),
+    (["init"], "Missing"),
+    (["check", "nothing.toml"], "no such file"),
+    (["polish"], "No such command"),
+    (["--colour"], "No such option"),
+]
+
+
+@pytest.mark.parametrize("arguments, fragment", BAD, ids=lambda a: " ".join(a)[:60] if isinstance(a, list) else None)
+def test_bad_input_is_one_line_and_exit_status_2(run, arguments, fragment):
+    status, out, err = run(*arguments)
+    assert (status, out) == (2, "")
+    assert err.startswith("ratfit: ") and err.count("\n") == 1
+    assert fragment.lower() in err.lower()
+    assert len(err) < 500
+
+
+BAD_FILES = [
+    ({"domain": 'domian = ["0", "1"]'}, "domain"),
+    ({"target": 'target = "exp(x"'}, "target"),
+    ({"target": "target = exp(x)"}, "exp(x)"),  # malformed TOML: the line is shown
+    ({"target": None}, "equals"),
+    ({"variable": None}, "variable"),
+    ({"form": None}, "form"),
+    ({"form": "[form]\nnumerator = 1.5"}, "whole number"),
+    ({"form": "[form]\nnumerator = -1"}, "whole number"),
+    ({"form": '[form]\nnumerator = 1\nexpression = "a*x"'}, "one of"),
+    ({"form": '[form]\nnumerator = 1\nunknowns = ["a"]'}, "does not go with"),
+    ({"form": '[form]\nexpression = "a*x"'}, "a"),
+    ({"form": '[form]\nexpression = "a*x"\nunknowns = ["a", "b"]'}, "does not occur"),
+    ({"form": '[form]\nexpression = "x*x"\nunknowns = ["x"]'}, "rename"),
+    ({"form": '[form]\npower = "1 - x**2"'}, "degree 1"),
+    ({"form": "[form]\nnumerator = 1\nsupport = [\"0\"]"}, "two ends"),
+    ({"condition": '[[condition]]\nkind = "valeu"\nat = "0"'}, "value"),
+    ({"condition": '[[condition]]\nkind = "value"'}, "at"),
+    ({"condition": '[[condition]]\nkind = "value"\nat = "0"\nwieght = "1"'}, "unknown key"),
+    ({"condition": '[[condition]]\nkind = "derivative"\nat = "0"\norder = "2"'}, "whole number"),
+    ({"condition": '[[condition]]\nkind = "derivative"\nat = "0"\norder = true'}, "whole number"),
+    ({"condition": '[condition]\nkind = "value"\nat = "0"'}, "[[condition]]"),
+    ({"condition": '[[condition]]\nkind = "value"\nat = ["0"]'}, "expression"),
+    ({"domain": 'domain = ["1", "0"]'}, "reversed"),
+    ({"domain": 'domain = "0 1"'}, "two ends"),
+    ({"domain": 'domain = ["0", "k"]'}, "k"),
+    ({"variable": 'variable = "sin"'}, "reserved"),
+    ({"variable": 'variable = "x y"'}, "name"),
+    ({"name": "name = 3"}, "quotes"),
+    ({"form": "[parameters]\nx = [\"0\", \"1\"]\n[form]\nnumerator = 1"}, "two things"),
+    ({"form": "[parameters]\nm = \"0\"\n[form]\nnumerator = 1"}, "range"),
+    ({"condition": '[[condition]]\nkind = "value"\nat = "0"\n[[reference]]\nname = "r"\ntarget = "exp(q*x)"'}, "q"),
+]
+
+
+@pytest.mark.parametrize("changes, fragment", BAD_FILES)
+def test_bad_problem_files(run, tmp_path, changes, fragment):
+    status, out, err = run("derive", problem_file(tmp_path, **changes))
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1 and fragment.lower() in err.lower()
+
+
+def test_a_good_problem_file(run, tmp_path):
+    assert run("derive", problem_file(tmp_path))[0] == 0
+
+
+def test_a_file_that_is_too_large(run, tmp_path):
+    (tmp_path / "large.toml").write_text("#" * (1 << 20) + "\n")
+    status, _, err = run("derive", str(tmp_path / "large.toml"))
+    assert status == 2 and "1 MiB" in err
+
+
+def test_a_file_that_is_no_text(run, tmp_path):
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    assert run("derive", str(tmp_path / "binary.toml"))[0] == 2
+
+
+KEYS = ["name", "status", "target", "variable", "domain", "parameters", "form", "expression", "candidates", "free"]
+KEYS += ["choice", "route", "conditions", "rejected", "cost"]
+
+
+@pytest.mark.parametrize("name", [c.name for c in cards()])
+def test_json_keeps_the_contract(run, name):
+    status, out, _ = run("derive", name, "--format", "json")
+    found = json.loads(out)
+    assert status == 0 and list(found) == KEYS
+    assert all(list(c) == ["kind", "at", "equals", "holds", "residual"] for c in found["conditions"])
+    assert list(found["cost"]) == ["add", "mul", "div", "other"]
+    names = {n: parse_expression("1", {}) for n in [found["variable"], *found["parameters"], *(f["name"] for f in found["free"])]}
+    for text in [found["expression"], *found["candidates"]]:
+        parse_expression(text, names)  # text in ratfit's own grammar, of these names alone
+
+
+def test_an_expression_with_options(run):
+    status, out, _ = run("derive", *SINE, "--format", "json")
+    assert status == 0
+    assert json.loads(out)["expression"] == json.loads(run("derive", "eq12", "--format", "json")[1])["expression"]
+
+
+def test_an_expression_may_begin_with_a_minus(run):
+    status, out, _ = run("derive", "-x**2", "--on", "-1", "1", "--form", "2", "--value", "-1", "--value", "0", "--value", "1", "--format", "json")
+    assert (status, json.loads(out)["expression"]) == (0, "-x**2")
+
+
+def test_parameters_and_lets_on_the_command_line(run):
+    arguments = ["h", "--let", "h=t**n", "--parameter", "n=1:1000", "--variable", "t", "--on", "0", "1", "--form", "1/1"]
+    status, out, _ = run("derive", *arguments, "--value", "0", "--value", "1", "--derivative", "1", "--format", "json")
+    assert status == 0
+    assert json.loads(out)["parameters"] == {"n": ["1", "1000"]}
+
+
+def test_clashing_conditions_are_an_honest_no(run):
+    arguments = ["derive", "exp(x)", "--on", "0", "1", "--form", "1", "--value", "0;equals=1", "--value", "0;equals=2", "--value", "1"]
+    status, out, _ = run(*arguments, "--format", "json")
+    found = json.loads(out)
+    assert (status, found["status"], found["expression"], list(found)) == (1, "inconsistent", None, KEYS)
+    assert "value at 0" in run(*arguments)[1]
+
+
+def test_a_family_is_a_no_only_when_unique_is_asked(run):
+    assert run("derive", "eq15")[0] == 0
+    status, out, _ = run("derive", "eq15", "--unique", "--format", "json")
+    assert (status, json.loads(out)["expression"], json.loads(out)["status"]) == (1, None, "family")
+
+
+def test_the_spurious_root_is_shown_with_its_reason(run):
+    found = json.loads(run("derive", "eq12", "--route", "polynomial", "--format", "json")[1])
+    assert found["route"] == "polynomial"
+    assert any(r["expression"] == "x" and "cancels" in r["reason"] for r in found["rejected"])
+
+
+def test_latex(run):
+    assert run("derive", "eq19", "--format", "latex")[1].startswith("\\frac{")
+
+
+def test_out_writes_whole_files(run, tmp_path):
+    path = tmp_path / "fit.json"
+    status, out, _ = run("derive", "eq19", "--format", "json", "--out", str(path))
+    assert (status, out) == (0, "") and json.loads(path.read_text())["status"] == "unique"
+
+
+def test_giving_up_in_time_says_what_is_known(run):
+    status, out, _ = run("derive", "pade-exp", "--degree", "20", "--timeout", "0.05", "--format", "json")
+    assert (status, json.loads(out)["status"]) == (1, "timeout")
+
+
+def test_gallery_card_as_a_problem_file(run, tmp_path):
+    for name in (c.name for c in cards()):
+        path = tmp_path / f"{name}.toml"
+        path.write_text(run("gallery", name, "--format", "toml")[1])
+        assert run("check", str(path))[0] == 0
+        ours, theirs = (json.loads(run("derive", p, "--format", "json")[1]) for p in (str(path), name))
+        assert ours["expression"] == theirs["expression"]
+
+
+def test_init_writes_a_file_that_works_and_overwrites_none(run, tmp_path):
+    path = tmp_path / "my.toml"
+    assert run("init", str(path))[0] == 0
+    assert run("derive", str(path))[0] == 0
+    text = path.read_text()
+    assert run("init", str(path))[0] == 2 and path.read_text() == text
+
+
+ROW = ["name", "parameters", "samples", "seed", "sampling", "dtype", "backend", "regime", "flags", "epsilon", "nonfinite"]
+ROW += ["worst", "exact_s", "fit_s", "floor_s", "gamma", "gamma_low", "gamma_high", "note"]
+
+
+def test_bench_json_keeps_the_contract(run):
+    status, out, _ = run("bench", "eq12", "--samples", "1000", "--format", "json")
+    found = json.loads(out)
+    assert status == 0 and list(found) == ["machine", "rows"]
+    (row,) = found["rows"]
+    assert list(row) == ROW and list(row["worst"]) == ["definition", "at"]
+    assert 0.01 < row["epsilon"]["peak_mean"] < 0.02
+
+
+def test_bench_resumes_from_its_file(run, tmp_path):
+    path = tmp_path / "rows.jsonl"
+    arguments = ["bench", "eq19", "--samples", "1000", "--set", "m=0.2", "--out", str(path), "--format", "json"]
+    first = json.loads(run(*arguments)[1])["rows"]
+    lines = path.read_text().splitlines()
+    assert len(lines) == 3  # the target and two references
+    path.write_text("\n".join(lines[:2]) + "\n" + lines[2][:40])  # interrupted while the third was written
+    again = json.loads(run(*arguments, "--resume")[1])["rows"]
+    assert again[:2] == first[:2]
+    assert again[2]["epsilon"] == first[2]["epsilon"]
+    assert len(path.read_text().splitlines()) == 3
+
+
+def test_paper_writes_its_page_and_record(run, tmp_path):
+    status, out, _ = run("paper", "--samples", "2000", "--out", str(tmp_path / "paper"))
+    assert status == 0 and out.count("symbolically equal") == 4
+    record = json.loads((tmp_path / "paper" / "paper.json").read_text())
+    assert [e["place"] for e in record["equations"]] == ["Eq. 12", "Eq. 15", "Eq. 19", "Eq. 21"]
+    assert all(e["equal"] for e in record["equations"])
+    page = (tmp_path / "paper" / "paper.md").read_text()
+    assert all(f"## Eq. {n}" in page for n in (12, 15, 19, 21))
+
+
+@pytest.mark.parametrize("command", ["derive", "bench", "paper", "gallery", "init", "check"])
+def test_help_has_examples(run, command):
+    status, out, _ = run(command, "--help")
+    assert status == 0 and re.search(rf"^ +ratfit {command}", out, re.MULTILINE)
+
+
+def test_version(run):
+    import ratfit
+
+    assert run("--version")[1].strip().endswith(ratfit.__version__)

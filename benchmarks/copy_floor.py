@@ -13,7 +13,12 @@ def main() -> None:
         timed = rf.measure_speed(fit, parameters=parameters, reference=reference)
         times = (1000 * s for s in (timed.exact_s, timed.fit_s, timed.floor_s))
         interval = f"{timed.gamma:.2f} [{timed.gamma_low:.2f}, {timed.gamma_high:.2f}]"
-        print(name.ljust(8), *(f"{t:9.3f}" for t in times), f"{timed.fit_s / timed.floor_s:10.2f}", f" {interval}  {timed.note}")
+        print(
+            name.ljust(8),
+            *(f"{t:9.3f}" for t in times),
+            f"{timed.fit_s / timed.floor_s:10.2f}",
+            f" {interval}  {timed.note}",
+        )
 
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ def seconds(work: Callable[[], object], rounds: int = 3) -> float:
 
 
 def main() -> None:
-    print(f"{'exp':8} {'ratfit':>10} {'sympy.solve':>12} {'as stated':>12} {'mpmath':>10}   ratfit / sympy.solve, / mpmath")
+    print(f"{'exp':8} {'ratfit':>10} {'sympy.solve':>12} {'as stated':>12} {'mpmath':>10}   ratfit / solve, / mpmath")
     for degree in DEGREES:
         problem = card("pade-exp").with_degree(degree).problem
         assert rf.derive(problem).status == "unique"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 
@@ -26,6 +27,17 @@ class Job:
     def name(self) -> str:
         """The name of the row: the problem's, and after a colon the reference's."""
         return self.fit.problem.name + (f":{self.reference}" if self.reference else "")
+
+
+@dataclass(frozen=True)
+class Measuring:
+    """How to measure: the same for every row of a run."""
+
+    samples: int
+    seed: int
+    sampling: str
+    dtype: str
+    backend: str
 
 
 def jobs(fit: Fit, settings: Sequence[Mapping[str, sp.Expr | float]] = ()) -> list[Job]:
@@ -51,34 +63,42 @@ def _ends_and_middle(fit: Fit) -> list[dict[str, float]]:
     parameters = fit.problem.parameters
     if not parameters:
         return [{}]
-    return [{p.name: float(low + share * (high - low)) for p, (low, high) in parameters.items()} for share in (0, sp.Rational(1, 2), 1)]
+    shares = (sp.S.Zero, sp.S.Half, sp.S.One)
+    return [{p.name: float(low + s * (high - low)) for p, (low, high) in parameters.items()} for s in shares]
 
 
-def measure(
-    job: Job, *, samples: int, seed: int, sampling: str, dtype: str, backend: str, speed: bool = True
-) -> Record:
+def measure(job: Job, how: Measuring, *, speed: bool = True) -> Record:
     """Measures one row; without `speed` its times and gamma are None."""
-    error = measure_error(
-        job.fit, samples=samples, sampling=sampling, seed=seed, dtype=dtype, parameters=job.parameters, reference=job.reference
-    )
-    common = {
-        "name": job.name, "parameters": error.parameters, "samples": samples, "seed": seed, "sampling": sampling,
-        "dtype": dtype, "backend": backend, "regime": "jitted arrays", "epsilon": error.epsilon,
-        "nonfinite": error.nonfinite, "worst": error.worst,
-    }  # fmt: skip
-    if not speed:
-        times = dict.fromkeys(("exact_s", "fit_s", "floor_s", "gamma", "gamma_low", "gamma_high"))
-        return Record(**common, **times, flags="", note="eps only")  # type: ignore[arg-type]
-    timed = measure_speed(
-        job.fit, backend=backend, samples=samples, seed=seed, dtype=dtype, parameters=job.parameters, reference=job.reference
-    )
+    given: dict[str, Any] = {"parameters": job.parameters, "reference": job.reference}
+    error = measure_error(job.fit, samples=how.samples, sampling=how.sampling, seed=how.seed, dtype=how.dtype, **given)
+    timed = None
+    if speed:
+        timed = measure_speed(
+            job.fit, backend=how.backend, samples=how.samples, seed=how.seed, dtype=how.dtype, **given
+        )
     return Record(
-        **common, flags=timed.flags, exact_s=timed.exact_s, fit_s=timed.fit_s, floor_s=timed.floor_s,
-        gamma=timed.gamma, gamma_low=timed.gamma_low, gamma_high=timed.gamma_high, note=timed.note,
-    )  # type: ignore[arg-type]  # fmt: skip
+        name=job.name,
+        parameters=error.parameters,
+        samples=how.samples,
+        seed=how.seed,
+        sampling=how.sampling,
+        dtype=how.dtype,
+        backend=how.backend,
+        regime="jitted arrays",
+        flags=timed.flags if timed else "",
+        epsilon=error.epsilon,
+        nonfinite=error.nonfinite,
+        worst=error.worst,
+        exact_s=timed.exact_s if timed else None,
+        fit_s=timed.fit_s if timed else None,
+        floor_s=timed.floor_s if timed else None,
+        gamma=timed.gamma if timed else None,
+        gamma_low=timed.gamma_low if timed else None,
+        gamma_high=timed.gamma_high if timed else None,
+        note=timed.note if timed else "eps only",
+    )
 
 
 def parameters_of(job: Job) -> dict[str, float]:
     """All values that a row will state, those of its reference too; what --resume compares."""
     return setting(job.fit, job.parameters, job.reference).parameters
-

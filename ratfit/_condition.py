@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -12,7 +12,7 @@ from ratfit._parse import RatfitError
 from ratfit._target import Exact, Target, at_values, check_domain, exact, sample_values
 
 
-class AbstractCondition:
+class AbstractCondition(ABC):
     """A fact that the fit keeps exactly. `equals` left out means "what the target does there"."""
 
     kind: ClassVar[str]
@@ -36,26 +36,11 @@ class AbstractCondition:
         """Every expression it holds, for the search for undeclared symbols."""
 
 
-@dataclass(frozen=True)
-class Derivative(AbstractCondition):
-    """The derivative of the given order at a place; order 0 is the value.
-
-    Arguments: `at`, a number or an expression of the parameters inside the closed domain; `order`, a whole number
-    >= 0; `equals`, the number demanded. Where the target is 0/0 or infinite the one-sided limit inside the domain
-    is taken. Raises RatfitError for an order that is no whole number >= 0 and for a place that is not finite.
-    """
+class AbstractPointCondition(AbstractCondition):
+    """A derivative at a place, order 0 being the value."""
 
     at: sp.Expr
-    order: int = 1
-    equals: sp.Expr | None = None
-    kind: ClassVar[str] = "derivative"
-
-    def __post_init__(self) -> None:
-        _set_exact(self, "at")
-        _set_exact(self, "equals")
-        _refuse_infinite(self.at, f"{self.kind} at {self.at}: a place must be finite")
-        if isinstance(self.order, bool) or not isinstance(self.order, int) or self.order < 0:
-            raise RatfitError(f"{self.kind} at {self.at}: the order must be a whole number >= 0, not {self.order!r}")
+    order: int
 
     @property
     def place(self) -> str:
@@ -74,23 +59,43 @@ class Derivative(AbstractCondition):
 
 
 @dataclass(frozen=True)
-class Value(AbstractCondition):
-    """The value at a place: a `Derivative` of order 0, with the same arguments, limits and errors."""
+class Value(AbstractPointCondition):
+    """The value at a place.
+
+    Arguments: `at`, a number or an expression of the parameters inside the closed domain; `equals`, the number
+    demanded. Where the target is 0/0 or infinite the one-sided limit inside the domain is taken. Raises RatfitError
+    for a place that is not finite.
+    """
 
     at: sp.Expr
     equals: sp.Expr | None = None
     kind: ClassVar[str] = "value"
-    order: ClassVar[int] = 0
+    order: ClassVar[int] = 0  # type: ignore[misc]  # a value is a derivative of order 0, for good
 
     def __post_init__(self) -> None:
         _set_exact(self, "at")
         _set_exact(self, "equals")
         _refuse_infinite(self.at, f"{self.kind} at {self.at}: a place must be finite")
 
-    place = Derivative.place
-    demanded = Derivative.demanded
-    check = Derivative.check
-    expressions = Derivative.expressions
+
+@dataclass(frozen=True)
+class Derivative(AbstractPointCondition):
+    """The derivative of the given order at a place.
+
+    Arguments and errors are those of `Value`, and `order`, a whole number >= 0, which RatfitError is raised for too.
+    """
+
+    at: sp.Expr
+    order: int = 1
+    equals: sp.Expr | None = None
+    kind: ClassVar[str] = "derivative"
+
+    def __post_init__(self) -> None:
+        _set_exact(self, "at")
+        _set_exact(self, "equals")
+        _refuse_infinite(self.at, f"{self.kind} at {self.at}: a place must be finite")
+        if isinstance(self.order, bool) or not isinstance(self.order, int) or self.order < 0:
+            raise RatfitError(f"{self.kind} at {self.at}: the order must be a whole number >= 0, not {self.order!r}")
 
 
 @dataclass(frozen=True)
@@ -138,18 +143,19 @@ class Integral(AbstractCondition):
 
 
 def describe(condition: AbstractCondition) -> str:
-    """A condition in a few words: "value at 0", "derivative of order 2 at pi/2", "integral with weight 2*t over ..."."""
-    if isinstance(condition, Integral):
-        return f"integral with {condition.place}"
-    order = condition.order  # type: ignore[attr-defined]
-    return f"derivative of order {order} at {condition.place}" if order > 1 else f"{condition.kind} at {condition.place}"
+    """A condition in a few words: "value at 0", "derivative of order 2 at pi/2", "integral with ..."."""
+    if not isinstance(condition, AbstractPointCondition):
+        return f"{condition.kind} with {condition.place}"
+    if condition.order > 1:
+        return f"derivative of order {condition.order} at {condition.place}"
+    return f"{condition.kind} at {condition.place}"
 
 
 def _set_exact(condition: AbstractCondition, field: str) -> None:
     given: Exact | None = getattr(condition, field)
     if given is not None:
         object.__setattr__(condition, field, exact(given, f"{condition.kind}, {field}"))
-    if field == "equals" and given is not None:
+    if field == "equals":
         _refuse_infinite(condition.equals, f"{condition.kind}: equals must be finite")
 
 

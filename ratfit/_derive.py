@@ -93,7 +93,7 @@ def _shown_equations(system: System, route: str) -> tuple[str, ...]:
     """The polynomial system as a paper prints it: with a free scale, the leading numerator coefficient is 1."""
     if route != "polynomial":
         return ()
-    lead = {u: 1 for u in _leading(system)}
+    lead = dict.fromkeys(_leading(system), 1)
     return tuple(f"{e.subs(lead)} = 0" for e in polynomial_equations(system))
 
 

@@ -129,7 +129,9 @@ class Field:
         """The matrix of multiplication by an element."""
         if self._ring is None:
             return [[element]]
-        columns = [self._split(self.multiply(element, self._ring.from_dict({m: self._base.one}))) for m in self._monomials]
+        columns = [
+            self._split(self.multiply(element, self._ring.from_dict({m: self._base.one}))) for m in self._monomials
+        ]
         return [list(row) for row in zip(*columns, strict=True)]
 
     def null_space(self, rows: Sequence[Sequence[Element]], width: int) -> list[list[Element]]:
@@ -139,7 +141,12 @@ class Field:
         extension, so its free columns fill whole blocks, and one vector a block is a basis over the extension.
         """
         d = self.degree
-        wide = [[x for block in blocks for x in block[i]] for row in rows for blocks in [[self._block(e) for e in row]] for i in range(d)]
+        wide = [
+            [x for block in blocks for x in block[i]]
+            for row in rows
+            for blocks in [[self._block(e) for e in row]]
+            for i in range(d)
+        ]
         matrix = DomainMatrix(wide, (len(wide), width * d), self._base).to_field()
         basis = matrix.nullspace().to_list() if wide else DomainMatrix.eye(width * d, self._base).to_list()
         vectors = basis[::d]
@@ -156,7 +163,9 @@ class Field:
         return min(choices, key=lambda v: sum(self._length(e) for e in v))
 
     def _length(self, element: Element) -> int:
-        return sum(len(p.numer) if hasattr(p, "numer") and hasattr(p.numer, "terms") else bool(p) for p in self._split(element))
+        return sum(
+            len(p.numer) if hasattr(p, "numer") and hasattr(p.numer, "terms") else bool(p) for p in self._split(element)
+        )
 
     def _cleared(self, vector: Sequence[Element]) -> list[Element]:
         parts = [p for e in vector for p in self._split(e) if p]

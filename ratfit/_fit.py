@@ -13,7 +13,7 @@ import sympy as sp
 from ratfit._condition import AbstractCondition
 from ratfit._parse import RatfitError, nearest
 from ratfit._problem import Problem
-from ratfit._problem_file import form_table
+from ratfit._problem_text import form_table
 
 Reason = str
 """One sentence that says why something was rejected or not found, in words a person can act on."""

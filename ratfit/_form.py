@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar
@@ -36,7 +37,7 @@ class Shape:
 
 
 @dataclass(frozen=True)
-class AbstractForm:
+class AbstractForm(ABC):
     """What all forms share.
 
     `factor` multiplies and is written in the outer variable; `of` is the inner variable that fraction or expression
@@ -63,12 +64,28 @@ class AbstractForm:
             object.__setattr__(self, "support", ends)
         self.check()
 
+    @abstractmethod
     def check(self) -> None:
         """Raises RatfitError for arguments that make no sense together."""
 
+    @property
+    def written(self) -> sp.Expr | None:
+        """The expression that the form itself is written as, where it is."""
+        return None
+
+    @property
+    def named(self) -> tuple[sp.Symbol, ...]:
+        """The unknowns that a person gave names to."""
+        return ()
+
+    @abstractmethod
+    def shape(self, variable: sp.Symbol, taken: Iterable[str]) -> Shape:
+        """The form with its variable; its own unknowns get names that are not among those `taken`."""
+
     def expressions(self) -> tuple[sp.Expr, ...]:
-        """Every expression it holds, for the search for undeclared symbols (its own unknowns apart)."""
-        return tuple(e for e in (self.factor, self.of, *(self.support or ()), self.outside) if e is not None)
+        """Every expression it holds, for the search for undeclared symbols."""
+        parts = (self.factor, self.of, *(self.support or ()), self.outside, self.written)
+        return tuple(e for e in parts if e is not None)
 
     def inner(self, variable: sp.Symbol) -> sp.Expr:
         """The inner variable as an expression of the outer one."""
@@ -92,7 +109,9 @@ class Rational(AbstractForm):
     def check(self) -> None:
         for name, degree in (("numerator", self.numerator), ("denominator", self.denominator)):
             if isinstance(degree, bool) or not isinstance(degree, int) or not 0 <= degree <= MAX_DEGREE:
-                raise RatfitError(f"form: the {name}'s degree must be a whole number from 0 to {MAX_DEGREE}, not {degree!r}")
+                raise RatfitError(
+                    f"form: the {name}'s degree must be a whole number from 0 to {MAX_DEGREE}, not {degree!r}"
+                )
         if self.parity not in (None, "odd", "even"):
             raise RatfitError(f"form: parity must be odd or even, not {self.parity!r}")
         if self.parity == "odd" and self.numerator == 0 and self.denominator == 0:
@@ -131,6 +150,14 @@ class Form(AbstractForm):
     expression: sp.Expr
     unknowns: tuple[sp.Symbol, ...]
 
+    @property
+    def written(self) -> sp.Expr:
+        return self.expression
+
+    @property
+    def named(self) -> tuple[sp.Symbol, ...]:
+        return self.unknowns
+
     def check(self) -> None:
         object.__setattr__(self, "expression", exact(self.expression, "form, expression"))
         object.__setattr__(self, "unknowns", tuple(self.unknowns))
@@ -163,6 +190,10 @@ class Power(AbstractForm):
     exponent: str = "n"
     letters: ClassVar[tuple[str, str]] = ("A", "B")
 
+    @property
+    def written(self) -> sp.Expr:
+        return self.base
+
     def check(self) -> None:
         object.__setattr__(self, "base", exact(self.base, "form, power"))
         check_name(self.exponent, "form, exponent")
@@ -170,7 +201,9 @@ class Power(AbstractForm):
     def shape(self, variable: sp.Symbol, taken: Iterable[str]) -> Shape:
         base = self.base.subs(variable, self.inner(variable))
         if not base.is_polynomial(variable) or sp.degree(base, variable) != 1:
-            raise RatfitError(f"form: the power's base must be of degree 1 in {variable}, as in 1 - {variable}, not {base}")
+            raise RatfitError(
+                f"form: the power's base must be of degree 1 in {variable}, as in 1 - {variable}, not {base}"
+            )
         names = [_letters(letter, taken) for letter in self.letters]
         a, b = (sp.Symbol(name, real=True) for name in names)
         n = sp.Symbol(self.exponent, real=True)

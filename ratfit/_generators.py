@@ -65,7 +65,7 @@ class Generators:
         found = {d: e ** sp.Rational(1, self._degrees.get(d, 1)) for d, e in self._meaning.items()}
         for base, root in self._roots.items():
             found[root] = self.meaning(base) ** sp.Rational(1, self._degrees[base])
-        return found | {s: e for s, e in self._sines.items()}
+        return found | self._sines
 
     @property
     def _sines(self) -> dict[sp.Symbol, sp.Expr]:
@@ -83,7 +83,7 @@ class Generators:
         return self._dummies[expression]
 
     def register_angles(self, expressions: Iterable[sp.Expr]) -> None:
-        """Finds, for each monomial inside a sine or cosine, the smallest part of it that all angles are multiples of."""
+        """Finds, for each monomial inside a sine or cosine, the largest part that all its angles are multiples of."""
         for expression in expressions:
             for call in expression.atoms(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc):
                 for monomial, coefficient in _monomials(call.args[0]):
@@ -242,7 +242,9 @@ def _rewritten(e: sp.Expr) -> sp.Expr:
     if isinstance(e, (sp.sinh, sp.cosh, sp.tanh, sp.coth, sp.sech, sp.csch)):
         return e.rewrite(sp.exp)
     if isinstance(e, (sp.tan, sp.cot, sp.sec, sp.csc)):
-        return e.rewrite(sp.cos) if isinstance(e, sp.sec) else e.rewrite(sp.sin) if isinstance(e, sp.csc) else _tangent(e)
+        return (
+            e.rewrite(sp.cos) if isinstance(e, sp.sec) else e.rewrite(sp.sin) if isinstance(e, sp.csc) else _tangent(e)
+        )
     if isinstance(e, sp.erfc):
         return 1 - sp.erf(e.args[0])
     if isinstance(e, sp.acos):

@@ -80,7 +80,9 @@ def _form(words: Words) -> dict[str, Any]:
         return form | {"expression": words.form, "unknowns": [u.strip() for u in words.unknowns.split(",")]}
     match = re.fullmatch(r"(\d{1,4})(?:/(\d{1,4}))?", words.form.strip())  # type: ignore[union-attr]
     if match is None:
-        raise RatfitError(f"--form {words.form}: write degrees as 2/1 or 3, or an expression together with --unknowns a,b")
+        raise RatfitError(
+            f"--form {words.form}: write degrees as 2/1 or 3, or an expression together with --unknowns a,b"
+        )
     return form | {"numerator": int(match[1]), "denominator": int(match[2] or 0)}
 
 
@@ -110,7 +112,9 @@ def _settings(text: str, option: str, allowed: Sequence[str]) -> tuple[str, dict
     for piece in rest:
         key, _, value = piece.partition("=")
         if key.strip() not in allowed or not value.strip():
-            raise RatfitError(f"{option} {text}: {piece!r} is not of the form {' or '.join(f'{a}=...' for a in allowed)}")
+            raise RatfitError(
+                f"{option} {text}: {piece!r} is not of the form {' or '.join(f'{a}=...' for a in allowed)}"
+            )
         found[key.strip()] = value.strip()
     return first.strip(), found
 

@@ -33,16 +33,16 @@ class Problem:
     """What must be found: a fit of this form that keeps these conditions.
 
     Arguments: `conditions`; `form`; `target`, or in its place `variable` and `domain` when every condition states
-    `equals`; `parameters`, symbol -> range, or just the symbols (those of the expressions are found by themselves); `choice`, recorded values for free
-    coefficients, by name; `references`; `name`. Raises RatfitError for what does not fit together: a symbol that
-    nobody declared, a condition outside the domain, a missing `equals`.
+    `equals`; `parameters`, symbol -> range (those of the expressions are found by themselves); `choice`, recorded
+    values for free coefficients, by name; `references`; `name`. Raises RatfitError for what does not fit together: a
+    symbol that nobody declared, a condition outside the domain, a missing `equals`.
     """
 
     _: KW_ONLY
     conditions: tuple[AbstractCondition, ...]
     form: AbstractForm
     target: Target | None = None
-    variable: sp.Symbol = None  # type: ignore[assignment]  # set from the target
+    variable: sp.Symbol = None  # set from the target
     domain: tuple[sp.Expr, sp.Expr] = None  # type: ignore[assignment]  # set from the target
     parameters: Mapping[Parameter, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
     choice: Mapping[str, sp.Expr] = field(default_factory=dict)
@@ -82,8 +82,7 @@ def _expressions(problem: Problem) -> list[tuple[str, sp.Expr]]:
         found.append(("target", problem.target.expression))
     for number, condition in enumerate(problem.conditions, 1):
         found += [(f"condition {number} ({condition.kind})", e) for e in condition.expressions()]
-    found += [("form", e) for e in problem.form.expressions()]
-    return found + [("form", e) for e in (getattr(problem.form, n, None) for n in ("expression", "base")) if e is not None]
+    return found + [("form", e) for e in problem.form.expressions()]
 
 
 def _parameters(problem: Problem) -> dict[Parameter, tuple[sp.Expr, sp.Expr]]:
@@ -98,7 +97,7 @@ def _check(problem: Problem) -> None:
     if not 1 <= len(problem.conditions) <= MAX_CONDITIONS:
         raise RatfitError(f"{problem.name}: 1 to {MAX_CONDITIONS} conditions are needed, not {len(problem.conditions)}")
     _check_names(problem)
-    unknowns = set(getattr(problem.form, "unknowns", ()))
+    unknowns = set(problem.form.named)
     known = set(problem.parameters) | {problem.variable}
     for where, expression in _expressions(problem):
         allowed = known | unknowns if where == "form" else known
@@ -111,13 +110,14 @@ def _check(problem: Problem) -> None:
             raise RatfitError(f"{condition.kind} at {condition.place}: there is no target, so it must state equals")
     for reference in problem.references:
         for symbol in sorted(reference.expression.free_symbols - known - set(reference.parameters), key=str):
-            raise RatfitError(f"reference {reference.name}: nobody declared {symbol}; give it a value in its parameters")
+            raise RatfitError(
+                f"reference {reference.name}: nobody declared {symbol}; give it a value in its parameters"
+            )
     problem.form.shape(problem.variable, [s.name for s in known])
 
 
 def _check_names(problem: Problem) -> None:
-    unknowns = tuple(getattr(problem.form, "unknowns", ()))
-    names = [s.name for s in (problem.variable, *problem.parameters, *unknowns)]
+    names = [s.name for s in (problem.variable, *problem.parameters, *problem.form.named)]
     for name in names:
         check_name(name, "name")
     for name in names:

@@ -1,8 +1,7 @@
-"""Problem files: TOML text -> Problem and back, every key of the contract and no other."""
+"""Reading of problem files: TOML text -> Problem, every key of the contract and no other."""
 
 from __future__ import annotations
 
-import json
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -21,7 +20,18 @@ MAX_BYTES = 1 << 20
 CONDITIONS: Mapping[str, type[AbstractCondition]] = {c.kind: c for c in (Value, Derivative, Integral)}
 
 KEYS = {
-    "problem": ("name", "target", "variable", "domain", "let", "parameters", "form", "choice", "reference", "condition"),
+    "problem": (
+        "name",
+        "target",
+        "variable",
+        "domain",
+        "let",
+        "parameters",
+        "form",
+        "choice",
+        "reference",
+        "condition",
+    ),
     "form": (
         *("numerator", "denominator", "parity", "expression", "unknowns", "power", "exponent"),
         *("factor", "of", "support", "outside"),
@@ -43,7 +53,9 @@ def read_toml(path: Path) -> dict[str, Any]:
     if not path.exists():
         raise RatfitError(f"{path}: there is no such file")
     if not path.is_file():
-        raise RatfitError(f"{path}: this is a directory, not a problem file" if path.is_dir() else f"{path}: not a file")
+        raise RatfitError(
+            f"{path}: this is a directory, not a problem file" if path.is_dir() else f"{path}: not a file"
+        )
     try:
         with path.open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)
@@ -63,7 +75,9 @@ def toml_tables(text: str, what: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         number = _line_number(str(error))
-        shown = f": {text.splitlines()[number - 1].strip()[:60]!r}" if 0 < number <= text.count("\n") + 1 and text else ""
+        shown = (
+            f": {text.splitlines()[number - 1].strip()[:60]!r}" if 0 < number <= text.count("\n") + 1 and text else ""
+        )
         raise RatfitError(f"{what}: malformed TOML: {error}{shown}") from None
     except RecursionError:
         raise RatfitError(f"{what}: malformed TOML: nested too deeply") from None
@@ -100,17 +114,23 @@ def problem_of(tables: Mapping[str, Any], name: str = "problem") -> Problem:
         domain=domain,
         parameters={p: (p.low, p.high) for p in parameters},
         form=_form_of(_table(tables, "form"), names),
-        conditions=tuple(condition_of(t, names, f"condition {i}") for i, t in enumerate(_tables(tables, "condition"), 1)),
-        choice={n: _expression(v, {p.name: p for p in parameters}, f"choice {n}") for n, v in _table(tables, "choice").items()},
+        conditions=tuple(
+            condition_of(t, names, f"condition {i}") for i, t in enumerate(_tables(tables, "condition"), 1)
+        ),
+        choice={
+            n: _expression(v, {p.name: p for p in parameters}, f"choice {n}")
+            for n, v in _table(tables, "choice").items()
+        },
         references=tuple(_reference_of(t, names, own) for t in reference_tables),
     )
 
 
 def condition_of(table: Mapping[str, Any], names: Mapping[str, sp.Expr], what: str) -> AbstractCondition:
     """One kernel condition from its table, as in {kind = "derivative", at = "0", order = 2}."""
-    kind = table.get("kind")
+    kind = str(table.get("kind"))
     if kind not in CONDITIONS:
-        raise RatfitError(f"{what}: unknown kind {kind!r}{nearest(str(kind), CONDITIONS)}; known: {', '.join(CONDITIONS)}")
+        known = ", ".join(CONDITIONS)
+        raise RatfitError(f"{what}: unknown kind {kind!r}{nearest(kind, CONDITIONS)}; known: {known}")
     _check_keys(table, kind, what)
     what = f"{what} ({kind})"
     arguments: dict[str, Any] = {}
@@ -128,12 +148,16 @@ def condition_of(table: Mapping[str, Any], names: Mapping[str, sp.Expr], what: s
 
 def _form_of(table: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> AbstractForm:
     _check_keys(table, "form", "form")
-    common: dict[str, Any] = {k: _expression(table[k], names, f"form, {k}") for k in ("factor", "of", "outside") if k in table}
+    common: dict[str, Any] = {
+        k: _expression(table[k], names, f"form, {k}") for k in ("factor", "of", "outside") if k in table
+    }
     if "support" in table:
         common["support"] = _pair(table["support"], "form, support", names)
     shapes = [k for k in ("numerator", "expression", "power") if k in table]
     if len(shapes) != 1:
-        raise RatfitError("form: write one of numerator (with denominator), expression (with unknowns) or power (with exponent)")
+        raise RatfitError(
+            "form: write one of numerator (with denominator), expression (with unknowns) or power (with exponent)"
+        )
     mates = {"numerator": ("denominator", "parity"), "expression": ("unknowns",), "power": ("exponent",)}
     for key in table:
         if any(key in keys for shape, keys in mates.items() if shape != shapes[0]):
@@ -150,7 +174,9 @@ def _form_of(table: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> Abstract
     for name in symbols:
         if name in names:
             raise RatfitError(f"form: the unknown {name} is already the name of something else; rename it")
-    return Form(_expression(table["expression"], {**names, **symbols}, "form, expression"), tuple(symbols.values()), **common)
+    return Form(
+        _expression(table["expression"], {**names, **symbols}, "form, expression"), tuple(symbols.values()), **common
+    )
 
 
 def _variable_of(name: Any, domain: tuple[sp.Expr, sp.Expr]) -> sp.Symbol:
@@ -185,7 +211,9 @@ def _reference_of(table: Mapping[str, Any], names: Mapping[str, sp.Expr], own: M
     }
     for symbol, value in values.items():
         if isinstance(symbol, Parameter) and not symbol.low <= value <= symbol.high:
-            raise RatfitError(f"reference {name}: {symbol} = {value} is outside its range [{symbol.low}, {symbol.high}]")
+            raise RatfitError(
+                f"reference {name}: {symbol} = {value} is outside its range [{symbol.low}, {symbol.high}]"
+            )
     expression = _expression(table["target"], everything, f"reference {name}, target")
     return Reference(name, expression, _string(table.get("source", ""), f"reference {name}, source"), values)
 
@@ -232,77 +260,3 @@ def _pair(value: Any, what: str, names: Mapping[str, sp.Expr]) -> tuple[sp.Expr,
     if not isinstance(value, list) or len(value) != 2:
         raise RatfitError(f'{what}: write two ends, as in ["0", "1"]')
     return _expression(value[0], names, f"{what}, low"), _expression(value[1], names, f"{what}, high")
-
-
-def to_tables(problem: Problem) -> dict[str, Any]:
-    """The problem as the tables of a problem file, `let` put in; expressions are strings."""
-    tables: dict[str, Any] = {"name": problem.name}
-    if problem.target is not None:
-        tables["target"] = str(problem.target.expression)
-    tables |= {"variable": str(problem.variable), "domain": [str(end) for end in problem.domain]}
-    if problem.parameters:
-        tables["parameters"] = {p.name: [str(p.low), str(p.high)] for p in problem.parameters}
-    tables["form"] = form_table(problem.form)
-    if problem.choice:
-        tables["choice"] = {n: str(v) for n, v in problem.choice.items()}
-    if problem.references:
-        tables["reference"] = [_reference_table(r) for r in problem.references]
-    tables["condition"] = [_condition_table(c) for c in problem.conditions]
-    return tables
-
-
-def form_table(form: AbstractForm) -> dict[str, Any]:
-    """The [form] table of a form, without the keys that it leaves at their defaults."""
-    table: dict[str, Any]
-    if isinstance(form, Rational):
-        table = {"numerator": form.numerator, "denominator": form.denominator}
-        table |= {"parity": form.parity} if form.parity else {}
-    elif isinstance(form, Power):
-        table = {"power": str(form.base), "exponent": form.exponent}
-    else:
-        table = {"expression": str(form.expression), "unknowns": [str(u) for u in form.unknowns]}
-    table |= {"factor": str(form.factor)} if form.factor != 1 else {}
-    table |= {"of": str(form.of)} if form.of is not None else {}
-    if form.support is not None:
-        table |= {"support": [str(end) for end in form.support], "outside": str(form.outside)}
-    return table
-
-
-def _reference_table(reference: Reference) -> dict[str, Any]:
-    table: dict[str, Any] = {"name": reference.name, "target": str(reference.expression), "source": reference.source}
-    return table | ({"parameters": {str(s): str(v) for s, v in reference.parameters.items()}} if reference.parameters else {})
-
-
-def _condition_table(condition: AbstractCondition) -> dict[str, Any]:
-    table: dict[str, Any] = {"kind": condition.kind}
-    if isinstance(condition, Integral):
-        table["weight"] = str(condition.weight)
-        table |= {"over": [str(end) for end in condition.over]} if condition.over else {}
-    else:
-        table["at"] = condition.place
-    if isinstance(condition, Derivative):
-        table["order"] = condition.order
-    return table | ({"equals": str(condition.equals)} if condition.equals is not None else {})
-
-
-def write_toml(tables: Mapping[str, Any]) -> str:
-    """The text of a problem file. The standard library reads TOML only; ours holds strings, whole numbers and lists."""
-    plain = {k: v for k, v in tables.items() if not _is_table(v)}
-    lines = [f"{key} = {json.dumps(value)}" for key, value in plain.items()]
-    for key, value in tables.items():
-        if isinstance(value, dict):
-            lines += ["", f"[{key}]", *(f"{k} = {json.dumps(v)}" for k, v in value.items())]
-        elif _is_table(value):
-            for table in value:
-                lines += ["", f"[[{key}]]", *(f"{k} = {_inline(v)}" for k, v in table.items())]
-    return "\n".join(lines) + "\n"
-
-
-def _is_table(value: Any) -> bool:
-    return isinstance(value, dict) or (isinstance(value, list) and bool(value) and isinstance(value[0], dict))
-
-
-def _inline(value: Any) -> str:
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{k} = {json.dumps(v)}" for k, v in value.items()) + "}"
-    return json.dumps(value)

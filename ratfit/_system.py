@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from ratfit._condition import AbstractCondition, Integral
+from ratfit._condition import AbstractCondition, AbstractPointCondition, Integral
 from ratfit._deadline import OutOfTime, time_limit
 from ratfit._form import Rational, Shape
 from ratfit._parse import RatfitError
@@ -68,9 +68,10 @@ def _is_linear(system: System) -> bool:
     if _constant_denominator(system):
         return True
     problem = system.problem
-    if any(isinstance(condition, Integral) for condition in problem.conditions):
-        return False
-    return all(set(range(c.order)) <= _known_orders(problem, c.at) for c in problem.conditions)  # type: ignore[attr-defined]
+    return all(
+        isinstance(c, AbstractPointCondition) and set(range(c.order)) <= _known_orders(problem, c.at)
+        for c in problem.conditions
+    )
 
 
 def _constant_denominator(system: System) -> bool:
@@ -79,7 +80,8 @@ def _constant_denominator(system: System) -> bool:
 
 def _known_orders(problem: Problem, at: sp.Expr) -> set[int]:
     """The orders of derivative known at a place: those asked for there, and those that parity gives at 0."""
-    asked = {c.order for c in problem.conditions if not isinstance(c, Integral) and same(c.at, at)}  # type: ignore[attr-defined]
+    points = (c for c in problem.conditions if isinstance(c, AbstractPointCondition))
+    asked = {c.order for c in points if same(c.at, at)}
     return asked | {order for order in range(max(asked, default=0)) if _vanishes_by_parity(problem, at, order)}
 
 
@@ -107,14 +109,16 @@ def rows(system: System) -> list[tuple[int, list[sp.Expr]]]:
     for number, (condition, demand) in enumerate(zip(system.problem.conditions, system.demands, strict=True)):
         if isinstance(condition, Integral):
             found.append((number, _integral_row(system, condition, demand, pairs)))
-        elif plain:
+        elif isinstance(condition, AbstractPointCondition) and plain:
             found.append((number, _plain_row(system, condition, demand, pairs)))
-        else:
+        elif isinstance(condition, AbstractPointCondition):
             found += [(number, row) for row in _hermite_rows(system, condition, demand, pairs)]
     return found
 
 
-def _plain_row(system: System, condition, demand: sp.Expr, pairs: list[tuple[sp.Expr, sp.Expr]]) -> list[sp.Expr]:
+def _plain_row(
+    system: System, condition: AbstractPointCondition, demand: sp.Expr, pairs: list[tuple[sp.Expr, sp.Expr]]
+) -> list[sp.Expr]:
     x, factor = system.problem.variable, system.shape.factor
     weight = sp.factorial(condition.order)
     return [
@@ -164,20 +168,22 @@ def _integrated(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr])
     except OutOfTime:
         value = sp.S.NaN
     if value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo):
-        raise RatfitError(f"the integral of {integrand} over [{over[0]}, {over[1]}] has no closed form; choose another weight")
+        raise RatfitError(
+            f"the integral of {integrand} over [{over[0]}, {over[1]}] has no closed form; choose another weight"
+        )
     return value
 
 
 def _hermite_rows(
-    system: System, condition, demand: sp.Expr, pairs: list[tuple[sp.Expr, sp.Expr]]
+    system: System, condition: AbstractPointCondition, demand: sp.Expr, pairs: list[tuple[sp.Expr, sp.Expr]]
 ) -> list[list[sp.Expr]]:
     x, at, order = system.problem.variable, condition.at, condition.order
     data = [_known_derivative(system, condition, k) / sp.factorial(k) for k in range(order)]
     data.append(demand / sp.factorial(order))
-    pole, factor = _factor_series(system.shape.factor, x, at, order)
-    tops = [range(order, order + 1), range(order + pole + 1)][bool(pole) and order == 0]
+    pole, factor = factor_series(system.shape.factor, x, at, order)
     found = []
-    for k in [order + pole] if order else tops:
+    # A pole of the factor must be met by zeros of P: the value brings the rows below the pole's order along.
+    for k in range(order + pole + 1) if order == 0 else [order + pole]:
         row = []
         for above, below in pairs:
             p, q = taylor(above, x, at, k), taylor(below, x, at, k)
@@ -188,15 +194,15 @@ def _hermite_rows(
     return found
 
 
-def _known_derivative(system: System, condition, order: int) -> sp.Expr:
+def _known_derivative(system: System, condition: AbstractPointCondition, order: int) -> sp.Expr:
     """The derivative of a lower order that another condition at the same node asks for, or parity's zero."""
     for other, demand in zip(system.problem.conditions, system.demands, strict=True):
-        if not isinstance(other, Integral) and other.order == order and same(other.at, condition.at):  # type: ignore[attr-defined]
+        if isinstance(other, AbstractPointCondition) and other.order == order and same(other.at, condition.at):
             return demand
     return sp.S.Zero
 
 
-def _factor_series(factor: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> tuple[int, list[sp.Expr]]:
+def factor_series(factor: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> tuple[int, list[sp.Expr]]:
     """The order of the factor's pole at a node, and the Taylor coefficients of what is left when it is cleared."""
     if factor == 1:
         return 0, [sp.S.One]
@@ -246,9 +252,11 @@ def _residual(system: System, condition: AbstractCondition, demand: sp.Expr) -> 
     x = system.problem.variable
     if isinstance(condition, Integral):
         inside, rest = integral_parts(system.problem, condition)
-        primitive = primitive_of(condition.weight * system.shape.factor * system.shape.numerator, system.shape.denominator, x)
+        numerator = condition.weight * system.shape.factor * system.shape.numerator
+        primitive = primitive_of(numerator, system.shape.denominator, x)
         return primitive.subs(x, inside[1]) - primitive.subs(x, inside[0]) + rest - demand
-    value = sp.diff(system.shape.expression, x, condition.order).subs(x, condition.at)  # type: ignore[attr-defined]
+    assert isinstance(condition, AbstractPointCondition)
+    value = sp.diff(system.shape.expression, x, condition.order).subs(x, condition.at)
     if value.has(sp.nan, sp.zoo):
         raise RatfitError(f"the form has no value at {x} = {condition.place}; move the condition or change the factor")
     return value - demand

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TypeAlias
 
 import mpmath
 import sympy as sp
@@ -12,7 +13,7 @@ import sympy as sp
 from ratfit._deadline import OutOfTime, time_limit
 from ratfit._parse import RatfitError, check_name, parse_expression
 
-Exact = sp.Expr | int | float | Fraction | str
+Exact: TypeAlias = sp.Expr | int | float | Fraction | str
 
 INTEGRAL_SECONDS = 5.0
 """How long sympy may look for the closed form of an integral of the target before the person is asked to state it."""
@@ -130,7 +131,9 @@ class Target:
             with time_limit(INTEGRAL_SECONDS):
                 value = sp.integrate(weight * self.expression, (self.variable, *over))
         except OutOfTime:
-            raise RatfitError(f"no closed form of the target's integral within {INTEGRAL_SECONDS:g} s{advice}") from None
+            raise RatfitError(
+                f"no closed form of the target's integral within {INTEGRAL_SECONDS:g} s{advice}"
+            ) from None
         if not value.is_finite and (value.is_infinite or value.has(sp.nan, sp.zoo, sp.oo)):
             raise RatfitError("the target's integral diverges; choose a weight or range for which it is finite")
         if value.has(sp.Integral, sp.Piecewise):

@@ -1,28 +1,26 @@
-"""Tests the conditions as they were stated, never a cleared form of them; finds poles and cancelled factors."""
+"""Tests the conditions as they were stated, never a cleared form of them; rejects what fails or has a pole."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import lru_cache
+from collections.abc import Mapping
 from typing import Any
 
 import mpmath
 import sympy as sp
 
-from ratfit._condition import Integral, describe
+from ratfit._condition import AbstractCondition, AbstractPointCondition, Integral, describe
 from ratfit._field import Field, is_zero
 from ratfit._fit import Candidate, Checked
+from ratfit._fraction import presentable, reduced
 from ratfit._generators import DIGITS
 from ratfit._parse import RatfitError
+from ratfit._poles import compiled, multiprecise, poles
 from ratfit._solver import Solution
-from ratfit._system import System, integral_parts, primitive_of, taylor
+from ratfit._system import System, factor_series, integral_parts, primitive_of, taylor
 from ratfit._target import Parameter, at_values, sample_values
 
 TOLERANCE = mpmath.mpf("1e-30")
 """A residual at 50 digits below this, relative to the size of the demand, counts as zero."""
-
-SCAN = 2001
-"""Points at which a denominator that is no polynomial is looked at for changes of sign."""
 
 
 def verify(system: System, solution: Solution) -> Candidate:
@@ -44,118 +42,26 @@ def verify(system: System, solution: Solution) -> Candidate:
         _check(system, condition, demand, numerator, denominator, expression)
         for condition, demand in zip(system.problem.conditions, system.demands, strict=True)
     )
-    reason = _failure(system, checked, common) or _pole(system, numerator, denominator, free)
+    reason = _failure(checked, common) or ("" if free else _pole(system, denominator))
     return Candidate(expression, free, checked, reason)
 
 
-def presentable(factor: sp.Expr, numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol, inside: sp.Expr) -> sp.Expr:
-    """The fraction as it is shown: each sum without common constants, positive in the middle of the support.
-
-    The constants taken out are gathered into one; inner variables stay unexpanded.
-    """
-    constant = sp.S.One
-    shown = []
-    for part, sign in ((numerator, 1), (denominator, -1)):
-        for piece in sp.Mul.make_args(part):
-            base, exponent = piece.as_base_exp()
-            if not base.has(x) or not base.is_Add or not exponent.is_Integer:
-                shown.append(piece**sign)
-                continue
-            scale, plain = _without_scale(base, x, inside)
-            constant *= scale ** (exponent * sign)
-            shown.append(plain ** (exponent * sign))
-    field = Field([constant])
-    above, below = sp.fraction(sp.together(field.decode(field.encode(constant))))
-    return factor * above * sp.Mul(*shown) / below
-
-
-def _without_scale(base: sp.Expr, x: sp.Symbol, inside: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """A sum as (constant, sum with the shortest coefficients)."""
-    pairs = [term.as_independent(x, as_Add=False) for term in sp.Add.make_args(base)]
-    collected: dict[sp.Expr, sp.Expr] = {}
-    for coefficient, dependent in pairs:
-        collected[dependent] = collected.get(dependent, sp.S.Zero) + coefficient
-    field = Field(collected.values())
-    elements = [field.encode(c) for c in collected.values()]
-    short = field.simplest(elements)
-    place = next(i for i, e in enumerate(elements) if e)
-    scale = field.decode(field.multiply(elements[place], field.inverse(short[place])))
-    plain = sp.Add(*(field.decode(s) * d for s, d in zip(short, collected, strict=True)))
-    values = sample_values(plain.free_symbols | inside.free_symbols - {x}, ("3/7",))[0]
-    values.pop(x, None)
-    if sp.N(plain.subs(values).subs(x, inside.subs(values))).is_negative:
-        return -scale, -plain
-    return scale, plain
-
-
 def _middle(system: System) -> sp.Expr:
-    """A place inside the support: its middle, or one near its finite end."""
+    """A place inside the support: near its middle, or near its finite end."""
     low, high = system.problem.support()
     if low.is_infinite or high.is_infinite:
         return sp.S.One if low.is_infinite and high.is_infinite else low + 1 if high.is_infinite else high - 1
     return low + sp.Rational(4, 7) * (high - low)
 
 
-def reduced(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """Numerator and denominator without their common factor, and that factor (1 where there is none).
-
-    Coprime at one place of the parameters is coprime: the exact greatest common divisor is taken only if a
-    numerical one hints at it.
-    """
-    if not (numerator.is_polynomial(x) and denominator.is_polynomial(x)):
-        return numerator, denominator, sp.S.One
-    above, below = sp.Poly(numerator, x), sp.Poly(denominator, x)
-    if above.is_zero or below.is_ground or below.is_zero or not _share_a_root(above, below):
-        return numerator, denominator, sp.S.One
-    field = Field([*above.all_coeffs(), *below.all_coeffs()])
-    common = _gcd(field, _coefficients(field, above), _coefficients(field, below))
-    if len(common) == 1:
-        return numerator, denominator, sp.S.One
-    quotients = [_divide(field, _coefficients(field, p), common)[0] for p in (above, below)]
-    flat = field.simplest([*quotients[0], *quotients[1]])
-    split = len(quotients[0])
-    shown = [sp.Poly([field.decode(c) for c in cs], x).as_expr() for cs in (flat[:split], flat[split:])]
-    factor = sp.Poly([field.decode(c) for c in field.simplest(common)], x).as_expr()
-    return shown[0], shown[1], factor
-
-
-def _share_a_root(above: sp.Poly, below: sp.Poly) -> bool:
-    """Whether the resultant is numerically zero at a sampled place of all other symbols."""
-    symbols = (above.free_symbols | below.free_symbols) - set(above.gens)
-    values = sample_values(symbols, ("2/7",))[0]
-    with mpmath.workdps(DIGITS):
-        roots = [_polynomial_roots(p.as_expr().subs(values), above.gens[0]) for p in (above, below)]
-        return any(abs(a - b) < mpmath.mpf("1e-12") * (1 + abs(a)) for a in roots[0] for b in roots[1])
-
-
-def _coefficients(field: Field, polynomial: sp.Poly) -> list[Any]:
-    return _trimmed([field.encode(c) for c in polynomial.all_coeffs()])
-
-
-def _trimmed(polynomial: list[Any]) -> list[Any]:
-    while polynomial and not polynomial[0]:
-        polynomial = polynomial[1:]
-    return polynomial
-
-
-def _divide(field: Field, a: list[Any], b: list[Any]) -> tuple[list[Any], list[Any]]:
-    """Quotient and remainder of polynomials with coefficients in the exact field, leading coefficient first."""
-    inverse, quotient = field.inverse(b[0]), []
-    while len(a) >= len(b):
-        lead = field.multiply(a[0], inverse)
-        quotient.append(lead)
-        padded = b + [field.zero] * (len(a) - len(b))
-        a = [u - field.multiply(lead, v) for u, v in zip(a, padded, strict=True)][1:]
-    return quotient, _trimmed(a)
-
-
-def _gcd(field: Field, a: list[Any], b: list[Any]) -> list[Any]:
-    while b:
-        a, b = b, _divide(field, a, b)[1]
-    return a
-
-
-def _check(system: System, condition, demand: sp.Expr, numerator, denominator, expression) -> Checked:
+def _check(
+    system: System,
+    condition: AbstractCondition,
+    demand: sp.Expr,
+    numerator: sp.Expr,
+    denominator: sp.Expr,
+    expression: sp.Expr,
+) -> Checked:
     """One condition, exactly and at 50 digits."""
     try:
         exact = is_zero(_found_exactly(system, condition, numerator, denominator) - demand)
@@ -169,87 +75,102 @@ def _check(system: System, condition, demand: sp.Expr, numerator, denominator, e
 
 def _size(demand: sp.Expr) -> mpmath.mpf:
     values = sample_values(demand.free_symbols, ("1/7",))[0]
-    return abs(_mp(demand.subs(values)))
+    return abs(multiprecise(demand.subs(values)))
 
 
-def _found_exactly(system: System, condition, numerator, denominator) -> sp.Expr:
-    """The number that the candidate gives, in closed form."""
-    x = system.problem.variable
+def _found_exactly(system: System, condition: AbstractCondition, numerator: sp.Expr, denominator: sp.Expr) -> sp.Expr:
+    """The number that the candidate gives, in closed form; RatfitError where it is infinite."""
     if isinstance(condition, Integral):
         (low, high), rest = integral_parts(system.problem, condition)
+        x = system.problem.variable
         primitive = primitive_of(condition.weight * system.shape.factor * numerator, denominator, x)
         return primitive.subs(x, high) - primitive.subs(x, low) + rest
+    assert isinstance(condition, AbstractPointCondition)
     if system.shape.power is not None:
-        # A free exponent n > 2 is written as 2 plus something positive: then sympy knows that 0**(n - 2) is 0.
-        above = {s: s.low + sp.Dummy(positive=True) for s in numerator.free_symbols if isinstance(s, Parameter) and s.high == sp.oo}
-        value = sp.powsimp(sp.expand(sp.diff(numerator.subs(above), x, condition.order)), combine="exp").subs(x, condition.at)
-        return value.subs({v.args[1] if v.is_Add else v: s - s.low for s, v in above.items()})
-    series = [taylor(p, x, condition.at, condition.order) for p in (numerator, denominator)]
-    series.append(taylor(system.shape.factor, x, condition.at, condition.order))
+        return _power_derivative(numerator, system.problem.variable, condition)
+    return _quotient_derivative(system, condition, numerator, denominator)
+
+
+def _power_derivative(expression: sp.Expr, x: sp.Symbol, condition: AbstractPointCondition) -> sp.Expr:
+    """A free exponent n > 2 is written as 2 plus something positive: then sympy knows that 0**(n - 2) is 0."""
+    exponents = [s for s in expression.free_symbols if isinstance(s, Parameter) and s.high == sp.oo]
+    excess = {s: sp.Dummy(positive=True) for s in exponents}
+    raised = expression.subs({s: s.low + e for s, e in excess.items()})
+    derivative = sp.powsimp(sp.expand(sp.diff(raised, x, condition.order)), combine="exp")
+    return derivative.subs(x, condition.at).subs({e: s - s.low for s, e in excess.items()})
+
+
+def _quotient_derivative(
+    system: System, condition: AbstractPointCondition, numerator: sp.Expr, denominator: sp.Expr
+) -> sp.Expr:
+    """From the Taylor series of factor, numerator and denominator, divided in the exact field.
+
+    Differentiating the quotient itself would double its size with every order.
+    """
+    x, at, order = system.problem.variable, condition.at, condition.order
+    pole, cleared = factor_series(system.shape.factor, x, at, order)
+    series = [cleared, *(taylor(p, x, at, order + pole) for p in (numerator, denominator))]
     field = Field([c for s in series for c in s])
-    above, below, factor = ([field.encode(c) for c in s] for s in series)
+    factor, above, below = ([field.encode(c) for c in s] for s in series)
+    quotient = _divided(field, above, below)
+    if any(quotient[:pole]):
+        raise RatfitError(f"the candidate has a pole at {x} = {at}")
+    shifted = quotient[pole:]
+    total = field.zero
+    for j in range(min(order, len(factor) - 1) + 1):
+        total = total + field.multiply(shifted[order - j], factor[j])
+    return field.decode(total) * sp.factorial(order)
+
+
+def _divided(field: Field, above: list[Any], below: list[Any]) -> list[Any]:
+    """The quotient of two power series; RatfitError where the denominator vanishes."""
     inverse = field.inverse(below[0])
     quotient: list[Any] = []
-    for k in range(condition.order + 1):
-        total = above[k]
+    for k, coefficient in enumerate(above):
         for j in range(k):
-            total = total - field.multiply(quotient[j], below[k - j])
-        quotient.append(field.multiply(total, inverse))
-    total = field.zero
-    for j in range(condition.order + 1):
-        total = total + field.multiply(quotient[j], factor[condition.order - j])
-    return field.decode(total) * sp.factorial(condition.order)
+            coefficient = coefficient - field.multiply(quotient[j], below[k - j])
+        quotient.append(field.multiply(coefficient, inverse))
+    return quotient
 
 
-def _numerical_residual(system: System, condition, demand: sp.Expr, expression: sp.Expr) -> mpmath.mpf:
+def _numerical_residual(
+    system: System, condition: AbstractCondition, demand: sp.Expr, expression: sp.Expr
+) -> mpmath.mpf:
     """The largest |found - demanded| over sampled parameters, by numerical differentiation or quadrature."""
-    symbols = (expression.free_symbols | demand.free_symbols) - {system.problem.variable}
-    symbols |= set().union(*(e.free_symbols for e in condition.expressions())) - {system.problem.variable}
+    symbols = set().union(
+        expression.free_symbols, demand.free_symbols, *(e.free_symbols for e in condition.expressions())
+    )
     worst = mpmath.mpf(0)
-    for values in sample_values(symbols, ("1/7", "4/7", "9/11")):
+    for values in sample_values(symbols - {system.problem.variable}, ("1/7", "4/7", "9/11")):
         with mpmath.workdps(DIGITS):
             found = _numerical(system, condition, expression, values)
-            wanted = _mp(demand.subs(values))
             if not mpmath.isfinite(found):
                 raise RatfitError("the condition has no finite value")
-            worst = max(worst, abs(found - wanted))
+            worst = max(worst, abs(found - multiprecise(demand.subs(values))))
     return worst
 
 
-def _numerical(system: System, condition, expression: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> mpmath.mpf:
+def _numerical(
+    system: System, condition: AbstractCondition, expression: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]
+) -> mpmath.mpf:
     x = system.problem.variable
     if isinstance(condition, Integral):
         (low, high), rest = integral_parts(system.problem, condition)
-        function = _compiled((condition.weight * expression).subs(values), x)
-        return mpmath.quad(function, [_mp(low.subs(values)), _mp(high.subs(values))]) + _mp(rest.subs(values))
+        function = compiled((condition.weight * expression).subs(values), x)
+        ends = [multiprecise(end.subs(values)) for end in (low, high)]
+        return mpmath.quad(function, ends) + multiprecise(rest.subs(values))
+    assert isinstance(condition, AbstractPointCondition)
     at = condition.at.subs(values)
     low, high = (end.subs(values) for end in system.problem.support())
     side = 1 if at == low else -1 if at == high else 0
-
-    def moved(distance: mpmath.mpf) -> mpmath.mpf:
-        return function(_mp(at) + distance)
-
-    function = _compiled(expression.subs(values), x)
+    function = compiled(expression.subs(values), x)
     try:
-        return mpmath.diff(moved, 0, condition.order, direction=side)
+        return mpmath.diff(lambda distance: function(multiprecise(at) + distance), 0, condition.order, direction=side)
     except ZeroDivisionError:
-        raise RatfitError("the candidate has a pole there") from None
+        raise RatfitError(f"the candidate has a pole at {x} = {condition.at}") from None
 
 
-@lru_cache(maxsize=100)
-def _compiled(expression: sp.Expr, x: sp.Symbol) -> Callable[[mpmath.mpf], mpmath.mpf]:
-    return sp.lambdify(x, expression, "mpmath", cse=False)
-
-
-def _mp(number: sp.Expr) -> mpmath.mpf:
-    """A constant at the working precision of mpmath; RatfitError for one that is not real."""
-    value = sp.N(number, mpmath.mp.dps + 10, maxn=2 * mpmath.mp.dps + 20)
-    if value.is_real is not True:
-        raise RatfitError(f"{number} is not a real number")
-    return mpmath.mpf(sp.Float(value, mpmath.mp.dps + 10)._mpf_)
-
-
-def _failure(system: System, checked: tuple[Checked, ...], common: sp.Expr) -> str:
+def _failure(checked: tuple[Checked, ...], common: sp.Expr) -> str:
     """The conditions that do not hold, in words."""
     failed = []
     for c in checked:
@@ -266,59 +187,13 @@ def _failure(system: System, checked: tuple[Checked, ...], common: sp.Expr) -> s
     return f"{cancelled}{'; '.join(failed)}"
 
 
-def _pole(system: System, numerator: sp.Expr, denominator: sp.Expr, free: Mapping[sp.Symbol, Any]) -> str:
-    """The first pole on the closed support that the target does not have; families are not searched."""
+def _pole(system: System, denominator: sp.Expr) -> str:
+    """The first pole on the closed support that the target does not have, in words."""
     x = system.problem.variable
-    if free or not denominator.has(x):
-        return ""
-    for values in sample_values(denominator.free_symbols - {x}, ("0", "1/7", "4/7", "1")):
-        low, high = (end.subs(values) for end in system.problem.support())
-        with mpmath.workdps(DIGITS):
-            for root in _real_zeros(denominator.subs(values), x, low, high):
-                if not _target_infinite(system, values, root):
-                    return f"it has a pole at {x} = {mpmath.nstr(root, 8)}{at_values(values)}"
+    for root, values in poles(denominator, x, system.problem.support()):
+        if not _target_infinite(system, values, root):
+            return f"it has a pole at {x} = {mpmath.nstr(root, 8)}{at_values(values)}"
     return ""
-
-
-def _real_zeros(denominator: sp.Expr, x: sp.Symbol, low: sp.Expr, high: sp.Expr) -> list[mpmath.mpf]:
-    ends = [(-mpmath.inf if e == -sp.oo else mpmath.inf) if e.is_infinite else _mp(e) for e in (low, high)]
-    found = []
-    for base in (factor.as_base_exp()[0] for factor in sp.Mul.make_args(denominator)):
-        roots = _polynomial_roots(base, x) if base.is_polynomial(x) else _scanned_roots(base, x, ends)
-        tolerance = mpmath.mpf("1e-15")
-        found += [r.real for r in roots if abs(r.imag) < tolerance * (1 + abs(r)) and ends[0] - tolerance <= r.real <= ends[1] + tolerance]
-    return found
-
-
-@lru_cache(maxsize=100)
-def _polynomial_roots(polynomial: sp.Expr, x: sp.Symbol) -> list[mpmath.mpc]:
-    """The complex roots at DIGITS digits, kept because coprimality and poles both ask for them."""
-    coefficients = [_mp(c) for c in sp.Poly(polynomial, x).all_coeffs()]
-    size = max(map(abs, coefficients))
-    while coefficients and abs(coefficients[0]) < mpmath.mpf("1e-45") * size:
-        coefficients = coefficients[1:]
-    if len(coefficients) < 2:
-        return []
-    try:
-        return [mpmath.mpc(r) for r in mpmath.polyroots(coefficients, maxsteps=200, extraprec=mpmath.mp.prec)]
-    except mpmath.libmp.NoConvergence:
-        # Multiple roots converge slowly; the accuracy left is still far below the tolerance of the search.
-        return [mpmath.mpc(r) for r in mpmath.polyroots(coefficients, maxsteps=2000, extraprec=20 * mpmath.mp.prec, error=False)]
-
-
-def _scanned_roots(base: sp.Expr, x: sp.Symbol, ends: list[mpmath.mpf]) -> list[mpmath.mpc]:
-    """Changes of sign of something that is no polynomial; an infinite end is cut at a distance of 1000."""
-    if not base.has(x):
-        return []
-    low, high = max(ends[0], mpmath.mpf(-1000)), min(ends[1], mpmath.mpf(1000))
-    function = _compiled(base, x)
-    points = [low + (high - low) * i / (SCAN - 1) for i in range(SCAN)]
-    values = [function(p) for p in points]
-    found = [p for p, v in zip(points, values, strict=True) if v == 0]
-    for i in range(SCAN - 1):
-        if mpmath.sign(values[i]) * mpmath.sign(values[i + 1]) < 0:
-            found.append(mpmath.findroot(function, (points[i], points[i + 1]), solver="anderson"))
-    return [mpmath.mpc(f) for f in found]
 
 
 def _target_infinite(system: System, values: Mapping[sp.Symbol, sp.Expr], at: mpmath.mpf) -> bool:

@@ -84,7 +84,9 @@ problem_options = _together(
     click.option("--power", metavar="BASE", help="The form A + B*BASE**n; ';exponent=p' names the exponent."),
     click.option("--value", multiple=True, metavar="AT", help="Keep the value there; ';equals=...' states it."),
     click.option("--derivative", multiple=True, metavar="AT", help="Keep the slope there; ';order=2;equals=1/4'."),
-    click.option("--integral", multiple=True, metavar="WEIGHT", help="Keep an integral: 'weight=2*t;over=0,1;equals=1'."),
+    click.option(
+        "--integral", multiple=True, metavar="WEIGHT", help="Keep an integral: 'weight=2*t;over=0,1;equals=1'."
+    ),
     click.option("--variable", metavar="NAME", help="The variable, where the expression leaves it open."),
     click.option("--parameter", multiple=True, metavar="m=LOW:HIGH", help="A symbol that stays in the answer."),
     click.option("--let", multiple=True, metavar="h=EXPR", help="An abbreviation."),
@@ -93,9 +95,13 @@ problem_options = _together(
     click.option("--parity", metavar="odd|even", help="Parity of the whole fraction."),
     click.option("--support", nargs=2, metavar="LOW HIGH", help="Where the fit lives; it is 0 elsewhere."),
     click.option("--degree", type=int, metavar="N", help="Degree of a card that takes one (pade-exp)."),
-    click.option("--set", "settings", multiple=True, metavar="n=5", help="A value for a free coefficient or a parameter."),
+    click.option(
+        "--set", "settings", multiple=True, metavar="n=5", help="A value for a free coefficient or a parameter."
+    ),
     click.option("--route", default="auto", metavar="auto|linear|polynomial|power", help="Force a route."),
-    click.option("--timeout", type=float, default=60.0, show_default=True, metavar="SECONDS", help="Give up after that."),
+    click.option(
+        "--timeout", type=float, default=60.0, show_default=True, metavar="SECONDS", help="Give up after that."
+    ),
     click.option("--seed", type=int, default=0, show_default=True, help="Seed of random samples and starts."),
     click.option("--out", type=click.Path(), metavar="FILE", help="Write the result there."),
 )
@@ -133,7 +139,9 @@ def _one_word(problem: tuple[str, ...]) -> str:
     options = [o for p in derive.params + bench.params for o in p.opts if o.startswith("--")]
     for word in problem:
         if word.startswith("--") and len(word) > 2:
-            raise RatfitError(f"there is no option {word.split('=')[0]}{nearest(word.split('=')[0], options)}; see --help")
+            raise RatfitError(
+                f"there is no option {word.split('=')[0]}{nearest(word.split('=')[0], options)}; see --help"
+            )
     if not problem:
         raise RatfitError("which problem? give a gallery name, a file or an expression, as in `ratfit derive eq19`")
     if len(problem) > 1:
@@ -212,7 +220,7 @@ def gallery(name: str | None, format_: str) -> None:
     ratfit gallery
     ratfit gallery eq19 --format toml > my.toml     a problem file to start from
     """
-    from ratfit._problem_file import to_tables, write_toml
+    from ratfit._problem_text import to_tables, write_toml
     from ratfit.gallery import cards
     from ratfit.report.text import card_text, gallery_text
 
@@ -249,7 +257,8 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
     ratfit bench eq21 --format json --out rows.jsonl
     ratfit bench "exp(x)" --on 0 1 --form 2/2 --value 0 --derivative 0 --derivative "0;order=2" --value 1 --derivative 1
     """
-    from ratfit.report.bench import Measuring, run_bench
+    from ratfit._bench import Measuring
+    from ratfit.report.bench import run_bench
 
     found, shown = _read(problem, degree, options)
     values = settings_of(settings)
@@ -270,7 +279,14 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
 @cli.command()
 @click.option("--samples", type=int, default=1_000_000, show_default=True, metavar="N", help="Number of samples.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed of the samples.")
-@click.option("--out", type=click.Path(), default="ratfit-paper", show_default=True, metavar="FOLDER", help="Where page and record go.")
+@click.option(
+    "--out",
+    type=click.Path(),
+    default="ratfit-paper",
+    show_default=True,
+    metavar="FOLDER",
+    help="Where page and record go.",
+)
 @click.option("--format", "format_", default="text", type=click.Choice(["text", "json"]), show_default=True)
 def paper(samples: int, seed: int, out: str, format_: str) -> int:
     """Re-derive Eqs. 12, 15, 19 and 21 of the 1994 paper, and measure each beside its printed figures.

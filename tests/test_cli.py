@@ -139,7 +139,7 @@ BAD_FILES = [
     ({"form": '[form]\nexpression = "a*x"\nunknowns = ["a", "b"]'}, "does not occur"),
     ({"form": '[form]\nexpression = "x*x"\nunknowns = ["x"]'}, "rename"),
     ({"form": '[form]\npower = "1 - x**2"'}, "degree 1"),
-    ({"form": "[form]\nnumerator = 1\nsupport = [\"0\"]"}, "two ends"),
+    ({"form": '[form]\nnumerator = 1\nsupport = ["0"]'}, "two ends"),
     ({"condition": '[[condition]]\nkind = "valeu"\nat = "0"'}, "value"),
     ({"condition": '[[condition]]\nkind = "value"'}, "at"),
     ({"condition": '[[condition]]\nkind = "value"\nat = "0"\nwieght = "1"'}, "unknown key"),
@@ -153,8 +153,8 @@ BAD_FILES = [
     ({"variable": 'variable = "sin"'}, "reserved"),
     ({"variable": 'variable = "x y"'}, "name"),
     ({"name": "name = 3"}, "quotes"),
-    ({"form": "[parameters]\nx = [\"0\", \"1\"]\n[form]\nnumerator = 1"}, "two things"),
-    ({"form": "[parameters]\nm = \"0\"\n[form]\nnumerator = 1"}, "range"),
+    ({"form": '[parameters]\nx = ["0", "1"]\n[form]\nnumerator = 1'}, "two things"),
+    ({"form": '[parameters]\nm = "0"\n[form]\nnumerator = 1'}, "range"),
     ({"condition": '[[condition]]\nkind = "value"\nat = "0"\n[[reference]]\nname = "r"\ntarget = "exp(q*x)"'}, "q"),
 ]
 
@@ -192,7 +192,10 @@ def test_json_keeps_the_contract(run, name):
     assert status == 0 and list(found) == KEYS
     assert all(list(c) == ["kind", "at", "equals", "holds", "residual"] for c in found["conditions"])
     assert list(found["cost"]) == ["add", "mul", "div", "other"]
-    names = {n: parse_expression("1", {}) for n in [found["variable"], *found["parameters"], *(f["name"] for f in found["free"])]}
+    names = {
+        n: parse_expression("1", {})
+        for n in [found["variable"], *found["parameters"], *(f["name"] for f in found["free"])]
+    }
     for text in [found["expression"], *found["candidates"]]:
         parse_expression(text, names)  # text in ratfit's own grammar, of these names alone
 
@@ -204,19 +207,62 @@ def test_an_expression_with_options(run):
 
 
 def test_an_expression_may_begin_with_a_minus(run):
-    status, out, _ = run("derive", "-x**2", "--on", "-1", "1", "--form", "2", "--value", "-1", "--value", "0", "--value", "1", "--format", "json")
+    status, out, _ = run(
+        "derive",
+        "-x**2",
+        "--on",
+        "-1",
+        "1",
+        "--form",
+        "2",
+        "--value",
+        "-1",
+        "--value",
+        "0",
+        "--value",
+        "1",
+        "--format",
+        "json",
+    )
     assert (status, json.loads(out)["expression"]) == (0, "-x**2")
 
 
 def test_parameters_and_lets_on_the_command_line(run):
-    arguments = ["h", "--let", "h=t**n", "--parameter", "n=1:1000", "--variable", "t", "--on", "0", "1", "--form", "1/1"]
+    arguments = [
+        "h",
+        "--let",
+        "h=t**n",
+        "--parameter",
+        "n=1:1000",
+        "--variable",
+        "t",
+        "--on",
+        "0",
+        "1",
+        "--form",
+        "1/1",
+    ]
     status, out, _ = run("derive", *arguments, "--value", "0", "--value", "1", "--derivative", "1", "--format", "json")
     assert status == 0
     assert json.loads(out)["parameters"] == {"n": ["1", "1000"]}
 
 
 def test_clashing_conditions_are_an_honest_no(run):
-    arguments = ["derive", "exp(x)", "--on", "0", "1", "--form", "1", "--value", "0;equals=1", "--value", "0;equals=2", "--value", "1"]
+    arguments = [
+        "derive",
+        "exp(x)",
+        "--on",
+        "0",
+        "1",
+        "--form",
+        "1",
+        "--value",
+        "0;equals=1",
+        "--value",
+        "0;equals=2",
+        "--value",
+        "1",
+    ]
     status, out, _ = run(*arguments, "--format", "json")
     found = json.loads(out)
     assert (status, found["status"], found["expression"], list(found)) == (1, "inconsistent", None, KEYS)
@@ -267,7 +313,19 @@ def test_init_writes_a_file_that_works_and_overwrites_none(run, tmp_path):
     assert run("init", str(path))[0] == 2 and path.read_text() == text
 
 
-ROW = ["name", "parameters", "samples", "seed", "sampling", "dtype", "backend", "regime", "flags", "epsilon", "nonfinite"]
+ROW = [
+    "name",
+    "parameters",
+    "samples",
+    "seed",
+    "sampling",
+    "dtype",
+    "backend",
+    "regime",
+    "flags",
+    "epsilon",
+    "nonfinite",
+]
 ROW += ["worst", "exact_s", "fit_s", "floor_s", "gamma", "gamma_low", "gamma_high", "note"]
 
 

@@ -40,7 +40,9 @@ def test_a_jax_array_stays_one_and_can_be_differentiated(smith):
 
     found = smith(jnp.array([0.25, 0.5]), m=0.2)
     assert isinstance(found, jax.Array)
-    assert jax.grad(lambda v: smith(v, m=0.2))(jnp.float32(0.0)) == pytest.approx(math.sqrt(math.pi / 2) / 0.2, rel=1e-5)
+    assert jax.grad(lambda v: smith(v, m=0.2))(jnp.float32(0.0)) == pytest.approx(
+        math.sqrt(math.pi / 2) / 0.2, rel=1e-5
+    )
 
 
 def test_outside_its_support_the_fit_is_what_the_form_says():
@@ -84,7 +86,9 @@ def test_the_readme_of_python_use():
 def test_a_parameter_made_in_python():
     v, m = sp.Symbol("v", positive=True), rf.parameter("m", "1/100", "1/2")
     problem = rf.Problem(
-        target=rf.Target(v**m, v, (1, 2)), conditions=[rf.Value(1), rf.Derivative(1), rf.Derivative(1, order=2)], form=rf.Rational(1, 1)
+        target=rf.Target(v**m, v, (1, 2)),
+        conditions=[rf.Value(1), rf.Derivative(1), rf.Derivative(1, order=2)],
+        form=rf.Rational(1, 1),
     )
     fit = rf.derive(problem)
     assert list(problem.parameters) == [m]

@@ -72,7 +72,10 @@ def test_cost_is_no_higher_than_the_paper_states(name):
 def test_pade_table_of_exp(degree):
     fit = rf.derive(card("pade-exp").with_degree(degree).problem)
     above = sum(
-        sp.Rational(factorial(2 * degree - k) * factorial(degree), factorial(2 * degree) * factorial(k) * factorial(degree - k)) * x**k
+        sp.Rational(
+            factorial(2 * degree - k) * factorial(degree), factorial(2 * degree) * factorial(k) * factorial(degree - k)
+        )
+        * x**k
         for k in range(degree + 1)
     )
     ours = fit.expression.xreplace({fit.problem.variable: x})
@@ -82,7 +85,7 @@ def test_pade_table_of_exp(degree):
 
 def test_the_exponent_of_the_fresnel_factor_is_open_and_five_is_a_choice():
     fit = rf.derive("eq15")
-    (symbol, (low, high)), = fit.free.items()
+    ((symbol, (low, high)),) = fit.free.items()
     assert (symbol.name, low, high) == ("n", 2, sp.oo)
     assert {s.name: v for s, v in fit.choice.items()} == {"n": 5}
     three = rf.derive(fit.problem.with_choice({"n": 3}))
@@ -138,6 +141,8 @@ def test_smith_references_relate_as_the_sources_say():
     assert abs(today / printed - 2) < 1e-6
 
 
-@pytest.mark.parametrize("alias, name", [("eq12", "sin"), ("eq15", "fresnel"), ("eq19", "smith"), ("eq21", "beckmann"), ("eq28z", "zenith")])
+@pytest.mark.parametrize(
+    "alias, name", [("eq12", "sin"), ("eq15", "fresnel"), ("eq19", "smith"), ("eq21", "beckmann"), ("eq28z", "zenith")]
+)
 def test_equations_of_the_paper_answer_to_their_numbers(alias, name):
     assert card(alias).name == name

@@ -37,7 +37,7 @@ def solve_linear(system: System) -> list[Solution]:
     combined = [sp.Add(*(w * v[i] for w, v in zip(weights, vectors, strict=True))) for i in range(len(pairs))]
     above = sp.Add(*(c * n for c, (n, _) in zip(combined, pairs, strict=True)))
     below = sp.Add(*(c * d for c, (_, d) in zip(combined, pairs, strict=True)))
-    return [Solution(above, below, {symbol: (-sp.oo, sp.oo) for symbol in free})]
+    return [Solution(above, below, dict.fromkeys(free, (-sp.oo, sp.oo)))]
 
 
 def _with_one_last(vectors: list[list[sp.Expr]]) -> list[list[sp.Expr]]:

@@ -90,7 +90,9 @@ def _first_split(polynomials: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol]) 
     """The first equation that is a product of several factors, or a power, with its factors."""
     for i, polynomial in enumerate(polynomials):
         factors = [f for f, _ in _factors(polynomial) if f.has(*unknowns)]
-        if len(factors) > 1 or (factors and sp.expand(factors[0] - polynomial) != 0 and _degree_drops(factors[0], polynomial, unknowns)):
+        if len(factors) > 1 or (
+            factors and sp.expand(factors[0] - polynomial) != 0 and _degree_drops(factors[0], polynomial, unknowns)
+        ):
             return i, factors
     return None
 
@@ -134,7 +136,9 @@ def _eliminations(polynomials, unknowns) -> Iterator[tuple[sp.Symbol, sp.Expr, l
         others = [*polynomials[:place], *polynomials[place + 1 :]]
         yield symbol, -rest / slope, others
         return
-    single = next(((i, next(iter(s))) for i, p in enumerate(polynomials) if len(s := p.free_symbols & set(unknowns)) == 1), None)
+    single = next(
+        ((i, next(iter(s))) for i, p in enumerate(polynomials) if len(s := p.free_symbols & set(unknowns)) == 1), None
+    )
     if single is not None:
         place, symbol = single
         others = [*polynomials[:place], *polynomials[place + 1 :]]
@@ -188,7 +192,9 @@ def _by_groebner(polynomials, unknowns) -> Iterator[tuple[sp.Symbol, sp.Expr, li
     """A lexicographic basis: its last equation is in one unknown, or else that unknown is free."""
     constants = {c: sp.Dummy(positive=True) for p in polynomials for c in _constants(p)}
     back = {d: c for c, d in constants.items()}
-    domain_symbols = sorted({s for p in polynomials for s in p.xreplace(constants).free_symbols} - set(unknowns), key=str)
+    domain_symbols = sorted(
+        {s for p in polynomials for s in p.xreplace(constants).free_symbols} - set(unknowns), key=str
+    )
     used = [u for u in unknowns if any(p.has(u) for p in polynomials)]
     domain = sp.QQ.frac_field(*domain_symbols) if domain_symbols else sp.QQ
     basis = sp.groebner([p.xreplace(constants) for p in polynomials], *used, order="lex", domain=domain)

@@ -15,7 +15,8 @@ from ratfit._condition import Derivative
 from ratfit._form import Rational
 from ratfit._parse import RatfitError, nearest, parse_expression
 from ratfit._problem import Problem
-from ratfit._problem_file import problem_of, read_problem, to_tables, toml_tables
+from ratfit._problem_file import problem_of, read_problem, toml_tables
+from ratfit._problem_text import to_tables
 
 MAX_DEGREE = 20
 """Largest --degree of a card that takes one: 2*20 + 1 conditions."""
@@ -80,7 +81,9 @@ def cards() -> tuple[Card, ...]:
 
 def names() -> list[str]:
     """The names of all cards."""
-    return sorted(entry.name.removesuffix(".toml") for entry in files(__package__).iterdir() if entry.name.endswith(".toml"))
+    return sorted(
+        entry.name.removesuffix(".toml") for entry in files(__package__).iterdir() if entry.name.endswith(".toml")
+    )
 
 
 def card(name: str) -> Card:
@@ -104,7 +107,9 @@ def _read(name: str) -> Card:
     symbols: dict[str, sp.Expr] = {s.name: s for s in (problem.variable, *problem.parameters)}
     symbols |= {n: sp.Symbol(n, real=True) for n in problem.choice}
     printed = about.pop("published")
-    settings = tuple({n: parse_expression(v, {}, f"card {name}") for n, v in s.items()} for s in about.pop("settings", []))
+    settings = tuple(
+        {n: parse_expression(v, {}, f"card {name}") for n, v in s.items()} for s in about.pop("settings", [])
+    )
     return Card(
         problem=problem,
         printed=printed,
@@ -118,7 +123,7 @@ def _read(name: str) -> Card:
 @cache
 def _aliases() -> dict[str, str]:
     """Alias -> name. Only the TOML is read: parsing the formulas of every card to find one would cost a cold start."""
-    found = {}
+    found: dict[str, str] = {}
     for name in names():
         tables = toml_tables((files(__package__) / f"{name}.toml").read_text("utf-8"), name)
         found |= dict.fromkeys(tables["card"].get("aliases", ()), name)
@@ -145,4 +150,3 @@ def is_file_name(text: str) -> bool:
         return text.endswith(".toml") or Path(text).exists()
     except (OSError, ValueError):  # too long for a path, or a NUL inside
         return False
-

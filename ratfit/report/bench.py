@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
-from ratfit._bench import Job, jobs, measure, parameters_of
+from ratfit._bench import Job, Measuring, jobs, measure, parameters_of
 from ratfit._fit import Fit
 from ratfit._record import Record, Row, append_row, machine, read_rows, same_measurement
 from ratfit._sampling import check_protocol
@@ -17,17 +17,6 @@ from ratfit.gallery import Card
 
 COLUMNS = ("peak_mean", "peak_rms", "relative_mean", "relative_max", "absolute_max")
 """The definitions of eps that a table shows; the record holds all of them."""
-
-
-@dataclass(frozen=True)
-class Measuring:
-    """How to measure: the same for every row of a run."""
-
-    samples: int
-    seed: int
-    sampling: str
-    dtype: str
-    backend: str
 
 
 def run_bench(
@@ -47,11 +36,12 @@ def _rows(found: Sequence[Job], how: Measuring, out: str | None, resume: bool) -
     done = read_rows(out) if out and resume else []
     for number, job in enumerate(found, 1):
         progress(f"{number}/{len(found)} {job.name} {dict(job.parameters)}")
-        known = next((r for r in done if same_measurement(r, name=job.name, parameters=parameters_of(job), **asdict(how))), None)
+        asked = {"name": job.name, "parameters": parameters_of(job), **asdict(how)}
+        known = next((row for row in done if same_measurement(row, **asked)), None)
         if known is not None:
             yield known
             continue
-        record = measure(job, **asdict(how))
+        record = measure(job, how)
         if out:
             append_row(Path(out), record)
         yield record.to_json_object()
@@ -69,7 +59,9 @@ def table(rows: Sequence[Row]) -> str:
     head = ("problem", "parameters", "dtype", *COLUMNS, "worst at", "nonfinite", "gamma", "fit/floor", "note")
     body = [_cells(row) for row in rows]
     widths = [max(len(line[i]) for line in [head, *body]) for i in range(len(head))]
-    return "\n".join("  ".join(cell.ljust(w) for cell, w in zip(line, widths, strict=True)).rstrip() for line in [head, *body])
+    return "\n".join(
+        "  ".join(cell.ljust(w) for cell, w in zip(line, widths, strict=True)).rstrip() for line in [head, *body]
+    )
 
 
 def _cells(row: Row) -> tuple[str, ...]:
@@ -77,7 +69,17 @@ def _cells(row: Row) -> tuple[str, ...]:
     eps = (short(row["epsilon"][d]) for d in COLUMNS)
     at = short(row["worst"]["at"])
     floor = row["fit_s"] / row["floor_s"] if row["fit_s"] and row["floor_s"] else None
-    return (row["name"], parameters, row["dtype"], *eps, at, str(row["nonfinite"]), gamma(row), short(floor), row["note"])
+    return (
+        row["name"],
+        parameters,
+        row["dtype"],
+        *eps,
+        at,
+        str(row["nonfinite"]),
+        gamma(row),
+        short(floor),
+        row["note"],
+    )
 
 
 def gamma(row: Row | Record) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ratfit._bench import Job, jobs, measure
+from ratfit._bench import Job, Measuring, jobs, measure
 from ratfit._derive import derive
 from ratfit._error import DEFINITIONS
 from ratfit._fit import Fit
@@ -23,6 +23,14 @@ EQUATIONS = ("eq12", "eq15", "eq19", "eq21")
 DTYPES = ("float32", "float64")
 PROTOCOL = "uniform"
 BACKEND = "jax-cpu"
+
+
+EXPLANATION = """\
+Errors are against the exact function in float64, whatever the type under test. gamma is the exact function's median
+time over the fit's, both jitted by JAX on arrays, timed in turn with the copy floor `x + 1`; a fit at the floor is
+limited by memory, and gamma is then a lower bound. The paper's figures come from a scalar program of 1994, and it
+defines neither measure.
+"""
 
 
 @dataclass(frozen=True)
@@ -52,7 +60,11 @@ def run_paper(samples: int, seed: int, out: Path, format_: str) -> int:
     record = to_json_object(sections, samples, seed)
     write_text(out / "paper.json", json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
     write_text(out / "paper.md", page(sections, samples, seed))
-    print(json.dumps(record, indent=2, ensure_ascii=False) if format_ == "json" else f"\nwrote {out}/paper.md and {out}/paper.json")
+    print(
+        json.dumps(record, indent=2, ensure_ascii=False)
+        if format_ == "json"
+        else f"\nwrote {out}/paper.md and {out}/paper.json"
+    )
     return 0 if all(equals_published(s.fit, s.card) for s in sections) else 1
 
 
@@ -71,8 +83,8 @@ def _section(shown: Card, samples: int, seed: int) -> Section:
     for dtype in DTYPES:
         for number, job in enumerate(found, 1):
             progress(f"{shown.place}: measuring {number}/{len(found)} {job.name} {dict(job.parameters)} {dtype}")
-            how = {"samples": samples, "seed": seed, "sampling": PROTOCOL, "dtype": dtype, "backend": BACKEND}
-            rows.append(measure(job, **how, speed=_is_timed(job)).to_json_object())
+            how = Measuring(samples, seed, PROTOCOL, dtype, BACKEND)
+            rows.append(measure(job, how, speed=_is_timed(job)).to_json_object())
     progress("")
     return Section(shown, fit, tuple(rows))
 
@@ -84,8 +96,9 @@ def _is_timed(job: Job) -> bool:
 
 def _preamble(samples: int, seed: int) -> str:
     return (
-        f"The approximations of Schlick 1994, derived from their kernel conditions and measured on {samples:,} samples\n"
-        f"({PROTOCOL} in the variable, seed {seed}). eps are fractions; gamma is exact time / fit time, with its 95 % interval."
+        "The approximations of Schlick 1994, derived from their kernel conditions and measured on\n"
+        f"{samples:,} samples ({PROTOCOL} in the variable, seed {seed}). eps are fractions; gamma is exact time / fit\n"
+        "time, with its 95 % interval."
     )
 
 
@@ -102,17 +115,29 @@ def section_text(section: Section) -> str:
     lines += [f"  paper     eps {_figure(shown.epsilon)}, gamma {_figure(shown.gamma)}", ""]
     head, *body = _table(section.rows)
     widths = [max(len(line[i]) for line in [head, *body]) for i in range(len(head))]
-    lines += ["  " + "  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in [head, *body]]
+    lines += [
+        "  " + "  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in [head, *body]
+    ]
     return "\n".join(lines)
 
 
 def _table(rows: Sequence[Row]) -> list[tuple[str, ...]]:
-    found = [("against", "at", "dtype", *COLUMNS, "gamma", "fit/floor")]
+    found: list[tuple[str, ...]] = [("against", "at", "dtype", *COLUMNS, "nonfinite", "gamma", "fit/floor")]
     for row in rows:
         parameters = " ".join(f"{n}={short(v)}" for n, v in row["parameters"].items())
         floor = short(row["fit_s"] / row["floor_s"]) if row["fit_s"] else "-"
         eps = (short(row["epsilon"][d]) for d in COLUMNS)
-        found.append((row["name"].partition(":")[2] or "the target", parameters, row["dtype"], *eps, gamma(row), floor))
+        found.append(
+            (
+                row["name"].partition(":")[2] or "the target",
+                parameters,
+                row["dtype"],
+                *eps,
+                str(row["nonfinite"]),
+                gamma(row),
+                floor,
+            )
+        )
     return found
 
 
@@ -148,16 +173,15 @@ def page(sections: Sequence[Section], samples: int, seed: int) -> str:
     """The run as one Markdown page."""
     about = machine()
     lines = ["# The approximations of Schlick 1994, derived and measured", "", _preamble(samples, seed), ""]
-    lines += [f"Made by `ratfit paper --samples {samples} --seed {seed}` on {about['processor']} ({about['cores']} cores).", ""]
+    lines += [
+        f"Made by `ratfit paper --samples {samples} --seed {seed}` on {about['processor']} ({about['cores']} cores).",
+        "",
+    ]
     for section in sections:
         lines += _page_section(section)
     lines += ["## What eps means", "", "| name | definition |", "|---|---|"]
     lines += [f"| {name} | `{formula.replace('|', chr(92) + '|')}` |" for name, formula in DEFINITIONS.items()]
-    lines += ["", "Errors are against the exact function in float64, whatever the type under test. gamma is the exact"]
-    lines += ["function's median time over the fit's, both jitted by JAX on arrays, timed in turn with the copy floor `x + 1`;"]
-    lines += ["a fit at the floor is limited by memory, and gamma is then a lower bound. The paper's figures come from a"]
-    lines += ["scalar program of 1994 and define neither measure.", ""]
-    return "\n".join(lines)
+    return "\n".join([*lines, "", EXPLANATION])
 
 
 def _page_section(section: Section) -> list[str]:

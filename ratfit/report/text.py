@@ -8,7 +8,7 @@ from ratfit._condition import describe
 from ratfit._field import is_zero
 from ratfit._fit import Checked, Fit
 from ratfit._problem import Problem
-from ratfit._problem_file import form_table
+from ratfit._problem_text import form_table
 from ratfit.gallery import Card
 from ratfit.report.unicode import lines as formula_lines
 

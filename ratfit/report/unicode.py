@@ -1,4 +1,4 @@
-"""A formula in one or three lines of Unicode; sympy's own pretty printer loads its physics, a quarter of a cold start."""
+"""A formula in one or three lines of Unicode; sympy's pretty printer loads its physics, a quarter of a cold start."""
 
 from __future__ import annotations
 
@@ -20,7 +20,11 @@ class _Line(StrPrinter):
             return f"1/√{self._boxed(expr.base)}"
         raised = str(expr.exp)
         if expr.exp.is_negative and expr.exp.is_Integer:
-            inverse = self._print_Pow(sp.Pow(expr.base, -expr.exp, evaluate=False)) if expr.exp != -1 else self._boxed(expr.base)
+            inverse = (
+                self._print_Pow(sp.Pow(expr.base, -expr.exp, evaluate=False))
+                if expr.exp != -1
+                else self._boxed(expr.base)
+            )
             return f"1/{inverse}"
         if raised.translate(_RAISED) != raised and all(c in "0123456789n" for c in raised):
             return f"{self._boxed(expr.base)}{raised.translate(_RAISED)}"

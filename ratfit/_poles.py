@@ -1,0 +1,97 @@
+"""Poles: the real zeros of a denominator on an interval, at sampled values of the parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+
+import mpmath
+import sympy as sp
+
+from ratfit._generators import DIGITS
+from ratfit._parse import RatfitError
+from ratfit._target import sample_values
+
+SCAN = 2001
+"""Points at which a denominator that is no polynomial is looked at for changes of sign."""
+
+NEAR = mpmath.mpf("1e-15")
+"""How far from the real axis, or from an end of the interval, a computed root may lie and still count as on it."""
+
+
+def poles(
+    denominator: sp.Expr, x: sp.Symbol, support: tuple[sp.Expr, sp.Expr]
+) -> list[tuple[mpmath.mpf, dict[sp.Symbol, sp.Expr]]]:
+    """Real zeros of a denominator on the closed support, each with the values of the parameters that it occurs at.
+
+    Every parameter takes four values of its range, the ends included: what lies between goes unseen.
+    """
+    if not denominator.has(x):
+        return []
+    found = []
+    for values in sample_values(denominator.free_symbols - {x}, ("0", "1/7", "4/7", "1")):
+        with mpmath.workdps(DIGITS):
+            ends = [_end(end.subs(values)) for end in support]
+            found += [(root, values) for root in _real_zeros(denominator.subs(values), x, ends)]
+    return found
+
+
+def _end(end: sp.Expr) -> mpmath.mpf:
+    return mpmath.mpf("inf" if end > 0 else "-inf") if end.is_infinite else multiprecise(end)
+
+
+def _real_zeros(denominator: sp.Expr, x: sp.Symbol, ends: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
+    found = []
+    for base in (factor.as_base_exp()[0] for factor in sp.Mul.make_args(denominator)):
+        roots = polynomial_roots(base, x) if base.is_polynomial(x) else _scanned_roots(base, x, ends)
+        real = (r.real for r in roots if abs(r.imag) < NEAR * (1 + abs(r)))
+        found += [r for r in real if ends[0] - NEAR <= r <= ends[1] + NEAR]
+    return found
+
+
+@lru_cache(maxsize=100)
+def polynomial_roots(polynomial: sp.Expr, x: sp.Symbol) -> list[mpmath.mpc]:
+    """The complex roots at DIGITS digits, kept because coprimality and poles both ask for them."""
+    coefficients = [multiprecise(c) for c in sp.Poly(polynomial, x).all_coeffs()]
+    size = max(map(abs, coefficients))
+    while coefficients and abs(coefficients[0]) < mpmath.mpf("1e-45") * size:
+        coefficients = coefficients[1:]
+    if len(coefficients) < 2:
+        return []
+    try:
+        return [mpmath.mpc(r) for r in mpmath.polyroots(coefficients, maxsteps=200, extraprec=mpmath.mp.prec)]
+    except mpmath.libmp.NoConvergence:
+        # Multiple roots converge slowly; the accuracy left is still far below the tolerance of the search.
+        return [
+            mpmath.mpc(r)
+            for r in mpmath.polyroots(coefficients, maxsteps=2000, extraprec=20 * mpmath.mp.prec, error=False)
+        ]
+
+
+def _scanned_roots(base: sp.Expr, x: sp.Symbol, ends: Sequence[mpmath.mpf]) -> list[mpmath.mpc]:
+    """Changes of sign of something that is no polynomial; an infinite end is cut at a distance of 1000."""
+    if not base.has(x):
+        return []
+    low, high = max(ends[0], mpmath.mpf(-1000)), min(ends[1], mpmath.mpf(1000))
+    function = compiled(base, x)
+    points = [low + (high - low) * i / (SCAN - 1) for i in range(SCAN)]
+    values = [function(p) for p in points]
+    found = [p for p, v in zip(points, values, strict=True) if v == 0]
+    for i in range(SCAN - 1):
+        if mpmath.sign(values[i]) * mpmath.sign(values[i + 1]) < 0:
+            found.append(mpmath.findroot(function, (points[i], points[i + 1]), solver="anderson"))
+    return [mpmath.mpc(f) for f in found]
+
+
+@lru_cache(maxsize=100)
+def compiled(expression: sp.Expr, x: sp.Symbol) -> Callable[[mpmath.mpf], mpmath.mpf]:
+    """The expression as a function of one number at mpmath's working precision."""
+    return sp.lambdify(x, expression, "mpmath", cse=False)
+
+
+def multiprecise(number: sp.Expr) -> mpmath.mpf:
+    """A constant at the working precision of mpmath; RatfitError for one that is not real."""
+    value = sp.N(number, mpmath.mp.dps + 10, maxn=2 * mpmath.mp.dps + 20)
+    if value.is_real is not True:
+        raise RatfitError(f"{number} is not a real number")
+    return mpmath.mpf(sp.Float(value, mpmath.mp.dps + 10)._mpf_)

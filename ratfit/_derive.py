@@ -9,7 +9,7 @@ import sympy as sp
 
 from ratfit._condition import describe
 from ratfit._deadline import OutOfTime, time_limit
-from ratfit._field import is_zero
+from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Fit
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
@@ -48,7 +48,7 @@ def _derived(problem: Problem, route: str, known: dict[str, str]) -> Fit:
     known |= {"route": route, "conditions": str(len(problem.conditions)), "unknowns": str(len(system.shape.unknowns))}
     try:
         solutions = solve(system, route)
-    except Undecided as error:
+    except (Undecided, Related) as error:
         return Fit(problem, "rejected", route, reasons=(str(error),))
     known["solutions to verify"] = str(len(solutions))
     candidates = _distinct([verify(system, solution) for solution in solutions])

@@ -14,11 +14,17 @@ from typing import Any
 import mpmath
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
+from sympy.polys.matrices.exceptions import DMNonInvertibleMatrixError
 from sympy.polys.rings import ring
 
 from ratfit._generators import DIGITS, Generators, numerical, sampled
 from ratfit._parse import RatfitError
 from ratfit._target import sample_values
+
+
+class Related(RatfitError):
+    """Constants taken for independent are not: what would follow from the algebra cannot be trusted."""
+
 
 Element = Any  # an element of sympy's fraction field, or of a polynomial ring over it
 
@@ -32,9 +38,9 @@ class Field:
 
     def __init__(self, expressions: Iterable[sp.Expr]) -> None:
         expressions = [sp.sympify(e) for e in expressions]  # Python integers to sympy's; never text
-        self._basis = Generators()
-        self._basis.register_angles(expressions)
-        flat = [self._basis.flatten(e) for e in expressions]
+        self._basis, flat = _flattened(expressions, half_angles=False)
+        if self._basis.has_roots_of_sines(flat):
+            self._basis, flat = _flattened(expressions, half_angles=True)
         for expression in flat:
             self._basis.register_roots(expression)
         atoms = list(self._basis.atoms)
@@ -100,7 +106,12 @@ class Field:
             return self._ring.ground_new(self._base.one / element.coeff(1))
         unit = DomainMatrix([[self._base.one]] + [[self._base.zero]] * (self.degree - 1), (self.degree, 1), self._base)
         blocks = DomainMatrix(self._block(element), (self.degree, self.degree), self._base)
-        return self._joined([row[0] for row in blocks.lu_solve(unit).to_list()])
+        try:
+            return self._joined([row[0] for row in blocks.lu_solve(unit).to_list()])
+        except DMNonInvertibleMatrixError:
+            raise Related(
+                f"{self.decode(element)} divides zero: its roots are related in a way not known here"
+            ) from None
 
     @cached_property
     def _monomials(self) -> list[tuple[int, ...]]:
@@ -152,6 +163,30 @@ class Field:
         vectors = basis[::d]
         return [self.simplest([self._joined(v[i * d : (i + 1) * d]) for i in range(width)]) for v in vectors]
 
+    def determinant(self, matrix: Sequence[Sequence[Element]]) -> Element:
+        """By Bird's algorithm, which never divides: a root's relation may hide a divisor of zero."""
+        n = len(matrix)
+        power = [list(row) for row in matrix]
+        for _ in range(n - 1):
+            power = self._product(self._bird(power), matrix)
+        return power[0][0] if n % 2 else -power[0][0]
+
+    def _bird(self, m: list[list[Element]]) -> list[list[Element]]:
+        """The upper triangle of a matrix, with minus the trace of what follows in each place of the diagonal."""
+        n = len(m)
+        traces = [sum((m[j][j] for j in range(i + 1, n)), self.zero) for i in range(n)]
+        return [[self.zero] * i + [-traces[i], *m[i][i + 1 :]] for i in range(n)]
+
+    def _product(self, a: Sequence[Sequence[Element]], b: Sequence[Sequence[Element]]) -> list[list[Element]]:
+        columns = list(zip(*b, strict=True))
+        return [
+            [
+                sum((self.multiply(x, y) for x, y in zip(row, column, strict=True) if x and y), self.zero)
+                for column in columns
+            ]
+            for row in a
+        ]
+
     def simplest(self, vector: Sequence[Element]) -> list[Element]:
         """The multiple of a vector that is shortest to write: no denominators, no common factor."""
         choices = [self._cleared(vector)]
@@ -189,33 +224,47 @@ class Field:
         return not self.encode(expression)
 
 
+def _flattened(expressions: Sequence[sp.Expr], half_angles: bool) -> tuple[Generators, list[sp.Expr]]:
+    basis = Generators(half_angles)
+    basis.register_angles(expressions)
+    return basis, [basis.flatten(e) for e in expressions]
+
+
 def is_zero(expression: sp.Expr) -> bool | None:
     """Whether an expression of constants and symbols is exactly zero; None when algebra and numerics disagree."""
     if expression.is_Rational:
         return expression == 0
-    exact = Field([expression]).is_zero(expression)
+    try:
+        exact = Field([expression]).is_zero(expression)
+    except Related:
+        return None
     numerical = all(abs(value) < mpmath.mpf(10) ** (10 - DIGITS) for value in sampled(expression))
     return exact if exact == numerical else None
 
 
-def numerical_rank(rows: Sequence[Sequence[sp.Expr]]) -> int:
-    """The rank of a matrix of expressions at DIGITS digits, the largest over sampled values of its symbols."""
+def ranks_agree(rows: Sequence[Sequence[sp.Expr]], rank: int) -> bool:
+    """Whether a matrix of expressions has that rank numerically, at DIGITS digits or, badly conditioned, at more."""
+    return any(numerical_rank(rows, digits) == rank for digits in (DIGITS, 5 * DIGITS))
+
+
+def numerical_rank(rows: Sequence[Sequence[sp.Expr]], digits: int = DIGITS) -> int:
+    """The rank of a matrix of expressions at so many digits, the largest over sampled values of its symbols."""
     symbols = {s for row in rows for e in row for s in e.free_symbols}
     ranks = []
     for values in sample_values(symbols, ("1/7", "4/7")):
-        with mpmath.workdps(DIGITS):
-            ranks.append(_rank([[numerical(e.subs(values)) for e in row] for row in rows]))
+        with mpmath.workdps(digits):
+            ranks.append(_rank([[numerical(e.subs(values), digits) for e in row] for row in rows], digits))
     return max(ranks, default=0)
 
 
-def _rank(rows: list[list[mpmath.mpf]]) -> int:
+def _rank(rows: list[list[mpmath.mpf]], digits: int) -> int:
     """Gaussian elimination with complete pivoting on rows scaled to size 1."""
     rows = [[e / size for e in row] for row in rows if (size := max(map(abs, row), default=0))]
     rank = 0
     while rows:
         i, j = max(((i, j) for i, row in enumerate(rows) for j in range(len(row))), key=lambda p: abs(rows[p[0]][p[1]]))
         pivot = rows.pop(i)
-        if abs(pivot[j]) < mpmath.mpf(10) ** (-(2 * DIGITS) // 3):
+        if abs(pivot[j]) < mpmath.mpf(10) ** (-(2 * digits) // 3):
             break
         rank += 1
         rows = [[e - row[j] / pivot[j] * p for e, p in zip(row, pivot, strict=True)] for row in rows]

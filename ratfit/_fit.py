@@ -48,7 +48,7 @@ class Candidate:
     reason: Reason = ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Fit:
     """What `derive` found, or an honest no.
 
@@ -131,6 +131,10 @@ class Fit:
         backend = "jax" if jax is not None and isinstance(at, jax.Array) else "numpy"
         function = lower(self.formula, [self.problem.variable, *symbols], backend)
         return function(at, *(values[s.name] for s in symbols))
+
+    def __repr__(self) -> str:
+        found = "; ".join(self.reasons) if self.expression is None else self.expression
+        return f"<Fit {self.problem.name}, {self.status}: {found}>"
 
     def _repr_latex_(self) -> str | None:
         """Mathematics in a notebook: the target's symbol, and the fit."""

@@ -4,7 +4,8 @@
 * roots of integers: roots of primes; roots of polynomials in the parameters: roots of their irreducible factors;
 * exp, and powers with symbolic exponents: one exponential for each monomial of the exponent (with logarithms of
   integers reduced to those of primes), independent by Lindemann and Weierstrass where the monomials are algebraic;
-* sin, cos, tan of multiples of one monomial: its cosine c, and its sine s with s**2 = 1 - c**2.
+* sin, cos, tan of multiples of one monomial: its cosine c, and its sine s with s**2 = 1 - c**2; where a sine stands
+  under a root, the tangent of half the angle in place of both.
 
 What is left (erf(1), atan(2), ...) is taken for independent. That can be false, so whoever draws a conclusion from
 a rank compares it with the numerical one (`numerical_rank`).
@@ -31,13 +32,13 @@ def sampled(expression: sp.Expr) -> list[mpmath.mpf]:
     return [numerical(expression.subs(v)) for v in values]
 
 
-def numerical(expression: sp.Expr) -> mpmath.mpf:
-    """A constant expression to DIGITS digits; one that sympy cannot tell from zero is zero."""
-    value = sp.N(expression, DIGITS, maxn=2 * DIGITS)
+def numerical(expression: sp.Expr, digits: int = DIGITS) -> mpmath.mpf:
+    """A constant expression to so many digits; one that sympy cannot tell from zero is zero."""
+    value = sp.N(expression, digits, maxn=2 * digits)
     if not value.is_number or value.has(sp.nan, sp.zoo, sp.oo) or value.is_real is False:
         raise RatfitError(f"{expression} is not a real number")
-    with mpmath.workdps(DIGITS):
-        return mpmath.mpf(sp.Float(value, DIGITS)._mpf_)
+    with mpmath.workdps(digits):
+        return mpmath.mpf(sp.Float(value, digits)._mpf_)
 
 
 class Generators:
@@ -47,7 +48,8 @@ class Generators:
     symbol -> its monic relation. `originals` gives each its expression in the constants as they were given.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, half_angles: bool = False) -> None:
+        self._half_angles = half_angles
         self._dummies: dict[sp.Expr, sp.Symbol] = {}
         self._meaning: dict[sp.Symbol, sp.Expr] = {}
         self._angles: dict[sp.Expr, int] = {}
@@ -146,11 +148,23 @@ class Generators:
             if monomial is sp.pi:
                 c1, s1 = self._rational_turn(coefficient)
             else:
-                cos, sin = self._atom(sp.cos(unit)), self._sine(unit)
+                cos, sin = self._halved(unit) if self._half_angles else (self._atom(sp.cos(unit)), self._sine(unit))
                 c1 = sp.chebyshevt(abs(turns), cos)
                 s1 = sp.sign(turns) * sin * sp.chebyshevu(abs(turns) - 1, cos)
             c, s = c * c1 - s * s1, s * c1 + c * s1
         return c, s
+
+    def _halved(self, unit: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+        """Cosine and sine in the tangent of half the angle: longer to read, but free of relations."""
+        half = self._atom(sp.sin(unit) / (1 + sp.cos(unit)))
+        return (1 - half**2) / (1 + half**2), 2 * half / (1 + half**2)
+
+    def has_roots_of_sines(self, flat: Iterable[sp.Expr]) -> bool:
+        """Whether a sine stands under a root: sqrt(1 - s)*sqrt(1 + s) is c then, which no generator would know."""
+        sines = set(self.relations)
+        return any(
+            not power.exp.is_Integer and power.base.free_symbols & sines for e in flat for power in e.atoms(sp.Pow)
+        )
 
     def _sine(self, unit: sp.Expr) -> sp.Symbol:
         key = sp.sin(unit)

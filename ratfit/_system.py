@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import sympy as sp
 
-from ratfit._condition import AbstractCondition, AbstractPointCondition, Integral
+from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivative, Integral
 from ratfit._deadline import OutOfTime, time_limit
 from ratfit._form import Rational, Shape
 from ratfit._parse import RatfitError
@@ -22,19 +22,32 @@ MAX_POLE = 10
 class System:
     """The equations that a problem's conditions put on the unknowns of its form.
 
-    `demands` holds the number that each condition asks for. `linear` says that the null space of `rows(system)`
-    is all there is to find.
+    `demands` holds the number that each of the `conditions` asks for: those of the problem, and in a completed system
+    the derivatives that were missing below them. `fraction` says that the form is a quotient of sums of unknowns times
+    functions; `linear` that moreover the null space of `rows(system)` is all there is to find.
     """
 
     problem: Problem
     shape: Shape
+    conditions: tuple[AbstractCondition, ...]
     demands: tuple[sp.Expr, ...]
-    linear: bool
+
+    @cached_property
+    def fraction(self) -> bool:
+        shape = self.shape
+        if shape.power is not None:
+            return False
+        parts = [part for pair in columns(shape)[0] for part in pair]
+        return not any(part.has(*shape.unknowns) or part.has(sp.nan, sp.zoo) for part in parts)
+
+    @cached_property
+    def linear(self) -> bool:
+        return self.fraction and (_constant_denominator(self) or (not self.integrals and not missing(self)))
 
     @property
-    def names(self) -> list[str]:
-        """Every name that the problem uses."""
-        return [s.name for s in (self.problem.variable, *self.problem.parameters, *self.shape.unknowns)]
+    def integrals(self) -> bool:
+        """Whether a condition is an integral."""
+        return any(isinstance(condition, Integral) for condition in self.conditions)
 
 
 def equations(problem: Problem) -> System:
@@ -42,8 +55,29 @@ def equations(problem: Problem) -> System:
     taken = [s.name for s in (problem.variable, *problem.parameters)]
     shape = problem.form.shape(problem.variable, taken)
     demands = tuple(condition.demanded(problem.target) for condition in problem.conditions)
-    system = System(problem, shape, demands, linear=False)
-    return System(problem, shape, demands, linear=_is_linear(system))
+    return System(problem, shape, problem.conditions, demands)
+
+
+def missing(system: System) -> list[Derivative]:
+    """The derivatives below those asked for at a node, which nothing states: with them the equations are linear."""
+    points = [c for c in system.conditions if isinstance(c, AbstractPointCondition)]
+    found: list[Derivative] = []
+    for condition in points:
+        known = {c.order for c in (*points, *found) if same(c.at, condition.at)}
+        for order in range(condition.order):
+            if order not in known and not _vanishes_by_parity(system.problem, condition.at, order):
+                found.append(Derivative(condition.at, order))
+    return found
+
+
+def completed(system: System) -> tuple[System, list[sp.Symbol]]:
+    """The system with a symbol in place of each missing derivative, and these symbols."""
+    lacking = missing(system)
+    names = {s.name for s in (system.problem.variable, *system.problem.parameters, *system.shape.unknowns)}
+    letter = next(letter for letter in ("s", "ss", "sss", "slope") if not any(n.startswith(letter) for n in names))
+    symbols = [sp.Symbol(f"{letter}{i}", real=True) for i in range(len(lacking))]
+    conditions, demands = (*system.conditions, *lacking), (*system.demands, *symbols)
+    return System(system.problem, system.shape, conditions, demands), symbols
 
 
 def columns(shape: Shape) -> tuple[list[tuple[sp.Expr, sp.Expr]], bool]:
@@ -58,31 +92,8 @@ def columns(shape: Shape) -> tuple[list[tuple[sp.Expr, sp.Expr]], bool]:
     return pairs + ([fixed] if has_fixed else []), has_fixed
 
 
-def _is_linear(system: System) -> bool:
-    shape = system.shape
-    if shape.power is not None:
-        return False
-    pairs, _ = columns(shape)
-    if any(part.has(*shape.unknowns) or part.has(sp.nan, sp.zoo) for pair in pairs for part in pair):
-        return False
-    if _constant_denominator(system):
-        return True
-    problem = system.problem
-    return all(
-        isinstance(c, AbstractPointCondition) and set(range(c.order)) <= _known_orders(problem, c.at)
-        for c in problem.conditions
-    )
-
-
 def _constant_denominator(system: System) -> bool:
     return not any(below.has(system.problem.variable) for _, below in columns(system.shape)[0])
-
-
-def _known_orders(problem: Problem, at: sp.Expr) -> set[int]:
-    """The orders of derivative known at a place: those asked for there, and those that parity gives at 0."""
-    points = (c for c in problem.conditions if isinstance(c, AbstractPointCondition))
-    asked = {c.order for c in points if same(c.at, at)}
-    return asked | {order for order in range(max(asked, default=0)) if _vanishes_by_parity(problem, at, order)}
 
 
 def _vanishes_by_parity(problem: Problem, at: sp.Expr, order: int) -> bool:
@@ -106,7 +117,7 @@ def rows(system: System) -> list[tuple[int, list[sp.Expr]]]:
     pairs, _ = columns(system.shape)
     plain = _constant_denominator(system)
     found: list[tuple[int, list[sp.Expr]]] = []
-    for number, (condition, demand) in enumerate(zip(system.problem.conditions, system.demands, strict=True)):
+    for number, (condition, demand) in enumerate(zip(system.conditions, system.demands, strict=True)):
         if isinstance(condition, Integral):
             found.append((number, _integral_row(system, condition, demand, pairs)))
         elif isinstance(condition, AbstractPointCondition) and plain:
@@ -196,7 +207,7 @@ def _hermite_rows(
 
 def _known_derivative(system: System, condition: AbstractPointCondition, order: int) -> sp.Expr:
     """The derivative of a lower order that another condition at the same node asks for, or parity's zero."""
-    for other, demand in zip(system.problem.conditions, system.demands, strict=True):
+    for other, demand in zip(system.conditions, system.demands, strict=True):
         if isinstance(other, AbstractPointCondition) and other.order == order and same(other.at, condition.at):
             return demand
     return sp.S.Zero
@@ -244,7 +255,7 @@ def polynomial_equations(system: System) -> list[sp.Expr]:
     """
     return [
         sp.fraction(sp.cancel(_residual(system, condition, demand)))[0]
-        for condition, demand in zip(system.problem.conditions, system.demands, strict=True)
+        for condition, demand in zip(system.conditions, system.demands, strict=True)
     ]
 
 

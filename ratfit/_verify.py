@@ -9,7 +9,7 @@ import mpmath
 import sympy as sp
 
 from ratfit._condition import AbstractCondition, AbstractPointCondition, Integral, describe
-from ratfit._field import Field, is_zero
+from ratfit._field import Field, Related, is_zero
 from ratfit._fit import Candidate, Checked
 from ratfit._fraction import presentable, reduced
 from ratfit._generators import DIGITS
@@ -66,6 +66,8 @@ def _check(
     try:
         exact = is_zero(_found_exactly(system, condition, numerator, denominator) - demand)
         residual = _numerical_residual(system, condition, demand, expression)
+    except Related:
+        return Checked(condition, demand, None, None)
     except RatfitError:
         return Checked(condition, demand, False, None)
     numerically = residual < TOLERANCE * (1 + _size(demand))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ratfit._field import Field, numerical_rank
+from ratfit._field import Field, ranks_agree
 from ratfit._solver.solution import Solution, Undecided
 from ratfit._system import System, columns, rows
 
@@ -12,18 +12,22 @@ from ratfit._system import System, columns, rows
 def solve_linear(system: System) -> list[Solution]:
     """All fractions of the form that satisfy the linear equations: none, one, or one family.
 
-    Raises Undecided when the exact rank and the rank at 50 digits differ: constants are then related in a way that
+    Raises Undecided when the exact rank and the numerical one differ: constants are then related in a way that
     the exact field does not know.
     """
+    return fractions(system, [row for _, row in rows(system)])
+
+
+def fractions(system: System, matrix: list[list[sp.Expr]]) -> list[Solution]:
+    """The fractions whose coefficients a matrix sends to zero, its symbols taken for independent."""
     pairs, has_fixed = columns(system.shape)
-    matrix = [row for _, row in rows(system)]
     field = Field([e for row in matrix for e in row])
     basis = field.null_space([[field.encode(e) for e in row] for row in matrix], len(pairs))
     rank = len(pairs) - len(basis)
-    if rank != (numerical := numerical_rank(matrix)):
+    if not ranks_agree(matrix, rank):
         raise Undecided(
-            f"the equations have rank {rank} exactly but {numerical} at 50 digits: some constants of the conditions "
-            "are related in a way that is not known here; state their values with equals"
+            f"the equations have rank {rank} exactly but not numerically: some constants of the conditions are related "
+            "in a way that is not known here; state their values with equals"
         )
     vectors = [[field.decode(e) for e in v] for v in basis]
     if has_fixed:

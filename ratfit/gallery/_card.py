@@ -64,7 +64,9 @@ class Card:
         at = self.problem.conditions[0].at  # type: ignore[attr-defined]
         conditions = tuple(Derivative(at, order) for order in range(2 * degree + 1))
         problem = replace(self.problem, conditions=conditions, form=Rational(degree, degree))
-        return replace(self, problem=problem, degree=degree)
+        if degree == self.degree:
+            return self
+        return replace(self, problem=problem, degree=degree, printed="")  # what is printed is the card's own degree
 
 
 _KEYS = (

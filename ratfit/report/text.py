@@ -82,6 +82,8 @@ def _cost_text(fit: Fit) -> str:
 
 
 def _card_lines(fit: Fit, card: Card) -> list[str]:
+    if not card.printed:
+        return []
     lines = ["", f"  published   {card.printed}", f"              {card.source}, {card.place}"]
     if fit.expression is not None:
         lines.append(f"              {agreement(fit, card)}")

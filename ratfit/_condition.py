@@ -160,7 +160,7 @@ def _set_exact(condition: AbstractCondition, field: str) -> None:
 
 
 def _refuse_infinite(expression: sp.Expr | None, message: str) -> None:
-    if expression is not None and expression.has(sp.oo, -sp.oo, sp.zoo, sp.nan):
+    if expression is not None and expression.has(sp.oo, -sp.oo, sp.zoo, sp.nan, sp.I):
         raise RatfitError(message)
 
 

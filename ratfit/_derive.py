@@ -7,13 +7,13 @@ from pathlib import Path
 
 import sympy as sp
 
-from ratfit._condition import describe
-from ratfit._deadline import OutOfTime, time_limit
+from ratfit._condition import AbstractCondition, describe
+from ratfit._deadline import TimeLimit
 from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Fit
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
-from ratfit._solver import Undecided, pick, solve
+from ratfit._solver import Solution, Undecided, pick, solve
 from ratfit._system import System, equations, polynomial_equations
 from ratfit._verify import verify
 
@@ -33,19 +33,21 @@ def derive(problem: Problem | str | Path, *, route: str = "auto", timeout: float
 
         problem = find_problem(str(problem))
     known: dict[str, str] = {}
-    try:
-        with time_limit(timeout):
-            return _derived(problem, route, known)
-    except OutOfTime:
+    with TimeLimit(timeout) as limit:
+        fit = _derived(problem, route, known)
+    if limit.passed:
         so_far = ", ".join(f"{k} {v}" for k, v in known.items()) or "the target's own data were not found"
         reason = f"gave up after {timeout:g} s ({so_far}); allow more with --timeout, or state equals"
         return Fit(problem, "timeout", known.get("route", route), reasons=(reason,))
+    return fit
 
 
 def _derived(problem: Problem, route: str, known: dict[str, str]) -> Fit:
     system = equations(problem)
     route = pick(system, route)
     known |= {"route": route, "conditions": str(len(problem.conditions)), "unknowns": str(len(system.shape.unknowns))}
+    if contradiction := _contradiction(system):
+        return Fit(problem, "inconsistent", route, reasons=(contradiction,))
     try:
         solutions = solve(system, route)
     except (Undecided, Related) as error:
@@ -53,8 +55,19 @@ def _derived(problem: Problem, route: str, known: dict[str, str]) -> Fit:
     known["solutions to verify"] = str(len(solutions))
     candidates = _distinct([verify(system, solution) for solution in solutions])
     fit = _assembled(problem, route, candidates, _shown_equations(system, route))
-    _check_choice(fit)
-    return fit if fit.candidates else _with_clash(fit, route)
+    if not fit.candidates:
+        return _with_clash(fit, route)
+    _check_choice(fit, system)
+    return fit
+
+
+def _contradiction(system: System) -> str:
+    """Two conditions that ask for different numbers at the same place, in words."""
+    pairs = list(zip(system.conditions, system.demands, strict=True))
+    for (a, demand), (b, other) in combinations(pairs, 2):
+        if describe(a) == describe(b) and is_zero(demand - other) is False:
+            return f"{describe(a)} is asked to be {demand} and to be {other}; drop one of them"
+    return ""
 
 
 def _distinct(candidates: list[Candidate]) -> list[Candidate]:
@@ -102,42 +115,46 @@ def _leading(system: System) -> tuple[sp.Symbol, ...]:
     return (unknowns[-1],) if system.shape.homogeneous else ()
 
 
-def _check_choice(fit: Fit) -> None:
-    """A recorded choice must name a free coefficient and lie inside its range."""
-    if fit.expression is None:
-        return
+def _check_choice(fit: Fit, system: System) -> None:
+    """A recorded choice must name a free coefficient, lie inside its range, and leave a fit that is one."""
     ranges = {s.name: r for s, r in fit.free.items()}
     for name, value in fit.problem.choice.items():
         if name not in ranges:
             free = ", ".join(ranges) or "nothing"
-            raise RatfitError(f"choice {name}: it is not free here (free: {free}); leave it out")
+            what = (
+                "is a parameter, not free" if name in {p.name for p in fit.problem.parameters} else "is not free here"
+            )
+            raise RatfitError(f"choice {name}: it {what} (free: {free}); leave it out")
         low, high = ranges[name]
         if value.is_number and not low < value < high:
             raise RatfitError(f"choice {name} = {value}: the conditions need {low} < {name} < {high}")
+    if fit.choice and len(fit.choice) == len(ranges):
+        chosen = verify(system, Solution(*sp.fraction(sp.together(fit.chosen / system.shape.factor))))
+        if chosen.reason:
+            choice = ", ".join(f"{s} = {v}" for s, v in fit.choice.items())
+            raise RatfitError(f"choice {choice}: {chosen.reason}; choose another value")
 
 
 def _with_clash(fit: Fit, route: str) -> Fit:
     """The honest no, with a smallest set of conditions that no fraction of the form can keep together."""
     problem = fit.problem
     reasons = [f"{c.expression}: {c.reason}" for c in fit.rejected]
-    clash = _smallest_clash(problem, route)
-    names = [describe(c) for c in clash]
-    kind = "these conditions clash" if len(clash) < len(problem.conditions) else "all conditions together clash"
-    reasons.append(f"{kind} in this form: {'; '.join(names)}. Drop one of them or raise a degree")
+    clash, proved = _smallest_clash(problem, route)
+    names = "; ".join(describe(c) for c in clash)
+    what = "these conditions clash" if len(clash) < len(problem.conditions) else "all conditions together clash"
+    search = "" if proved else " (the search for fewer was cut short)"
+    reasons.append(f"{what} in this form: {names}{search}. Drop one of them or raise a degree")
     return Fit(problem, fit.status, fit.route, (), fit.rejected, tuple(reasons), fit.equations)
 
 
-def _smallest_clash(problem: Problem, route: str) -> tuple:
-    """The smallest subset of the conditions that has no fit; all of them when time is short."""
-    try:
-        with time_limit(CLASH_SECONDS):
-            for size in range(1, len(problem.conditions)):
-                for subset in combinations(problem.conditions, size):
-                    if not _consistent(problem.with_conditions(subset), route):
-                        return subset
-    except OutOfTime:
-        pass
-    return problem.conditions
+def _smallest_clash(problem: Problem, route: str) -> tuple[tuple[AbstractCondition, ...], bool]:
+    """The smallest subset of the conditions that has no fit, and whether the search was finished."""
+    with TimeLimit(CLASH_SECONDS) as limit:
+        for size in range(1, len(problem.conditions)):
+            for subset in combinations(problem.conditions, size):
+                if not _consistent(problem.with_conditions(subset), route):
+                    return subset, True
+    return problem.conditions, not limit.passed
 
 
 def _consistent(problem: Problem, route: str) -> bool:
@@ -146,5 +163,5 @@ def _consistent(problem: Problem, route: str) -> bool:
         system = equations(problem)
         solutions = solve(system, pick(system, "auto" if route == "linear" else route))
         return any(not verify(system, s).reason for s in solutions)
-    except (RatfitError, Undecided):
+    except (RatfitError, Undecided):  # Related is a RatfitError too
         return True

@@ -78,6 +78,11 @@ class AbstractForm(ABC):
         """The unknowns that a person gave names to."""
         return ()
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Every name that it brings into the problem."""
+        return tuple(u.name for u in self.named)
+
     @abstractmethod
     def shape(self, variable: sp.Symbol, taken: Iterable[str]) -> Shape:
         """The form with its variable; its own unknowns get names that are not among those `taken`."""
@@ -193,6 +198,10 @@ class Power(AbstractForm):
     @property
     def written(self) -> sp.Expr:
         return self.base
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return (self.exponent,)
 
     def check(self) -> None:
         object.__setattr__(self, "base", exact(self.base, "form, power"))

@@ -5,7 +5,7 @@
 * exp, and powers with symbolic exponents: one exponential for each monomial of the exponent (with logarithms of
   integers reduced to those of primes), independent by Lindemann and Weierstrass where the monomials are algebraic;
 * sin, cos, tan of multiples of one monomial: its cosine c, and its sine s with s**2 = 1 - c**2; where a sine stands
-  under a root, the tangent of half the angle in place of both.
+  under a root or there are several, the tangent of half the angle in place of both.
 
 What is left (erf(1), atan(2), ...) is taken for independent. That can be false, so whoever draws a conclusion from
 a rank compares it with the numerical one (`numerical_rank`).
@@ -20,7 +20,7 @@ import mpmath
 import sympy as sp
 
 from ratfit._parse import RatfitError
-from ratfit._target import sample_values
+from ratfit._target import INSIDE, sample_values
 
 DIGITS = 50
 """Decimal digits of every numerical check of the algebra."""
@@ -28,8 +28,12 @@ DIGITS = 50
 
 def sampled(expression: sp.Expr) -> list[mpmath.mpf]:
     """The expression at three exact places inside the ranges of its parameters, to DIGITS digits."""
-    values = sample_values(expression.free_symbols, ("1/7", "4/7", "9/11"))
-    return [numerical(expression.subs(v)) for v in values]
+    return [numerical(expression.subs(v)) for v in sample_values(expression.free_symbols, ("1/7", "4/7", "9/11"))]
+
+
+def sampled_inside(expression: sp.Expr) -> list[mpmath.mpf]:
+    """The expression all over the ranges of its parameters; RatfitError where it is not real."""
+    return [numerical(expression.subs(v)) for v in sample_values(expression.free_symbols, INSIDE)]
 
 
 def numerical(expression: sp.Expr, digits: int = DIGITS) -> mpmath.mpf:
@@ -103,7 +107,9 @@ class Generators:
         if e.is_Add or e.is_Mul:
             return e.func(*(self.flatten(a) for a in e.args))
         if e.is_Pow and e.exp.is_Rational:
-            return self.flatten(e.base) ** e.exp
+            return self._root(e) if e.exp.q == 2 and e.base.is_number else self.flatten(e.base) ** e.exp
+        if isinstance(e, sp.CRootOf):
+            return self._algebraic(e)
         if isinstance(e, sp.exp) or e is sp.E or e.is_Pow:
             return self._exponential(e)
         if isinstance(e, (sp.sin, sp.cos)):
@@ -117,6 +123,32 @@ class Generators:
         if not e.args and e.is_real is False:
             raise RatfitError(f"{e} is not a real number")
         return self._atom(e)
+
+    def _root(self, e: sp.Pow) -> sp.Expr:
+        """A square root of a + b*sqrt(c): denested where it can be, and with b > 0 otherwise.
+
+        The roots of a + b*sqrt(c) and of a - b*sqrt(c), as sympy has them for sin(pi/5) and sin(2*pi/5), have a
+        product in the field below: two generators for them would be related.
+        """
+        a, b, c = _quadratic(e.base)
+        if b == 0:
+            return self.flatten(e.base) ** e.exp
+        norm = a**2 - b**2 * c
+        if b < 0 and norm > 0:
+            return self.flatten((sp.sqrt(norm) / sp.sqrt(a - b * sp.sqrt(c))) ** (2 * e.exp))
+        plain = sp.sqrtdenest(sp.sqrt(e.base))
+        if plain != sp.sqrt(e.base):
+            return self.flatten(plain) ** (2 * e.exp)
+        content = sp.gcd(a, b)
+        whole = a / content + b / content * sp.sqrt(c)
+        return self.flatten(content) ** e.exp * self.flatten(whole) ** e.exp
+
+    def _algebraic(self, e: sp.CRootOf) -> sp.Symbol:
+        if e not in self._dummies:
+            dummy = sp.Dummy("root", real=True)
+            self._dummies[e] = dummy
+            self.relations[dummy] = e.poly.monic().as_expr().xreplace({e.poly.gen: dummy})
+        return self._dummies[e]
 
     def _exponential(self, e: sp.Expr) -> sp.Expr:
         base, exponent = (sp.E, sp.S.One) if e is sp.E else e.as_base_exp()
@@ -141,16 +173,17 @@ class Generators:
         c, s = sp.S.One, sp.S.Zero
         for monomial, coefficient in _monomials(angle):
             part = self._angles.setdefault(monomial, int(coefficient.q))
+            if monomial is sp.pi:
+                c1, s1 = self._rational_turn(coefficient)
+                c, s = c * c1 - s * s1, s * c1 + c * s1
+                continue
             if part % coefficient.q:
                 raise RatfitError(f"{angle} has no place in the exact field of this problem")
             turns = int(coefficient * part)
             unit = monomial / part
-            if monomial is sp.pi:
-                c1, s1 = self._rational_turn(coefficient)
-            else:
-                cos, sin = self._halved(unit) if self._half_angles else (self._atom(sp.cos(unit)), self._sine(unit))
-                c1 = sp.chebyshevt(abs(turns), cos)
-                s1 = sp.sign(turns) * sin * sp.chebyshevu(abs(turns) - 1, cos)
+            cos, sin = self._halved(unit) if self._half_angles else (self._atom(sp.cos(unit)), self._sine(unit))
+            c1 = sp.chebyshevt(abs(turns), cos)
+            s1 = sp.sign(turns) * sin * sp.chebyshevu(abs(turns) - 1, cos)
             c, s = c * c1 - s * s1, s * c1 + c * s1
         return c, s
 
@@ -159,10 +192,13 @@ class Generators:
         half = self._atom(sp.sin(unit) / (1 + sp.cos(unit)))
         return (1 - half**2) / (1 + half**2), 2 * half / (1 + half**2)
 
-    def has_roots_of_sines(self, flat: Iterable[sp.Expr]) -> bool:
-        """Whether a sine stands under a root: sqrt(1 - s)*sqrt(1 + s) is c then, which no generator would know."""
+    def prefers_half_angles(self, flat: Iterable[sp.Expr]) -> bool:
+        """Whether a sine stands under a root, or several relations would make the algebra slow.
+
+        sqrt(1 - s)*sqrt(1 + s) is c, which no generator would know.
+        """
         sines = set(self.relations)
-        return any(
+        return len(sines) > 1 or any(
             not power.exp.is_Integer and power.base.free_symbols & sines for e in flat for power in e.atoms(sp.Pow)
         )
 
@@ -176,7 +212,7 @@ class Generators:
 
     def _rational_turn(self, coefficient: sp.Rational) -> tuple[sp.Expr, sp.Expr]:
         """Cosine and sine of a rational multiple of pi, from cos(pi/N), an algebraic number."""
-        n = 2 * int(coefficient.q)
+        n = 2 * self._angles[sp.pi]  # one cosine for all angles: cos(pi/7) lies in the field of cos(pi/14)
         key = sp.cos(sp.pi / n)
         if not isinstance(key, sp.cos):
             return self.flatten(sp.cos(coefficient * sp.pi)), self.flatten(sp.sin(coefficient * sp.pi))
@@ -223,7 +259,7 @@ class Generators:
     def _sign(self, factor: sp.Expr) -> int:
         if factor.is_positive:
             return 1
-        signs = {sp.sign(value) for value in sampled(self.meaning(factor))}
+        signs = {mpmath.sign(value) for value in sampled_inside(self.meaning(factor))}
         if len(signs) > 1:
             raise RatfitError(f"the sign of {self.meaning(factor)} changes with the parameters; narrow their ranges")
         return int(signs.pop())
@@ -243,6 +279,18 @@ class Generators:
         if flat.is_Add or flat.is_Mul or flat.is_Pow:
             return flat.func(*(self.rooted(a) for a in flat.args))
         return flat
+
+
+def _quadratic(number: sp.Expr) -> tuple[sp.Rational, sp.Rational, sp.Rational]:
+    """A number as a + b*sqrt(c) with rational a, b, c > 0; b is 0 where it is not of that kind."""
+    roots = [p for p in number.atoms(sp.Pow) if not p.exp.is_Integer]
+    if len(roots) == 1 and roots[0].exp == sp.S.Half and roots[0].base.is_Rational:
+        expanded = sp.expand(number)
+        b = expanded.coeff(roots[0])
+        a = sp.expand(expanded - b * roots[0])
+        if a.is_Rational and b.is_Rational and roots[0].base > 0:
+            return a, b, roots[0].base
+    return number, sp.S.Zero, sp.S.One
 
 
 def _monomials(argument: sp.Expr) -> list[tuple[sp.Expr, sp.Rational]]:

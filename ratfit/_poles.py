@@ -15,6 +15,12 @@ from ratfit._target import sample_values
 SCAN = 2001
 """Points at which a denominator that is no polynomial is looked at for changes of sign."""
 
+SETTINGS, PLACES = 61, 32
+"""Values of each parameter, and places on the support, of the scan for changes of sign."""
+
+ROOT_DIGITS = 400
+"""Digits of an algebraic number without radicals: enough for numerical derivatives at 50 digits up to order 6."""
+
 NEAR = mpmath.mpf("1e-15")
 """How far from the real axis, or from an end of the interval, a computed root may lie and still count as on it."""
 
@@ -24,20 +30,41 @@ def poles(
 ) -> list[tuple[mpmath.mpf, dict[sp.Symbol, sp.Expr]]]:
     """Real zeros of a denominator on the closed support, each with the values of the parameters that it occurs at.
 
-    Every parameter takes four values of its range, the ends included: what lies between goes unseen.
+    Every parameter takes four values of its range, the ends included, and those at which a scan of floats over range
+    and support sees the denominator change its sign: what both miss goes unseen.
     """
     if not denominator.has(x):
         return []
     found = []
-    for values in sample_values(denominator.free_symbols - {x}, ("0", "1/7", "4/7", "1")):
+    places = sample_values(denominator.free_symbols - {x}, ("0", "1/7", "4/7", "1"))
+    for values in places + _suspects(denominator, x, support):
         with mpmath.workdps(DIGITS):
-            ends = [_end(end.subs(values)) for end in support]
+            ends = [endpoint(end.subs(values)) for end in support]
             found += [(root, values) for root in _real_zeros(denominator.subs(values), x, ends)]
     return found
 
 
-def _end(end: sp.Expr) -> mpmath.mpf:
+def endpoint(end: sp.Expr) -> mpmath.mpf:
+    """An end of a range, infinite ones too, at mpmath's working precision."""
     return mpmath.mpf("inf" if end > 0 else "-inf") if end.is_infinite else multiprecise(end)
+
+
+def _suspects(denominator: sp.Expr, x: sp.Symbol, support: tuple[sp.Expr, sp.Expr]) -> list[dict[sp.Symbol, sp.Expr]]:
+    """One setting of the parameters at which the denominator changes its sign on the support, if floats see one."""
+    symbols = sorted(denominator.free_symbols - {x}, key=lambda s: s.name)
+    if not symbols or any(end.is_infinite for end in support):
+        return []
+    function = sp.lambdify([x, *symbols], denominator, "math", cse=False)
+    for values in sample_values(set(symbols), tuple(f"{k}/{SETTINGS}" for k in range(1, SETTINGS))):
+        low, high = (float(end.subs(values)) for end in support)
+        given = [float(values[s]) for s in symbols]
+        try:
+            found = [function(low + (high - low) * k / PLACES, *given) for k in range(PLACES + 1)]
+        except (ValueError, ZeroDivisionError, OverflowError):
+            continue
+        if min(found) < 0 < max(found):
+            return [values]
+    return []
 
 
 def _real_zeros(denominator: sp.Expr, x: sp.Symbol, ends: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
@@ -86,7 +113,8 @@ def _scanned_roots(base: sp.Expr, x: sp.Symbol, ends: Sequence[mpmath.mpf]) -> l
 @lru_cache(maxsize=100)
 def compiled(expression: sp.Expr, x: sp.Symbol) -> Callable[[mpmath.mpf], mpmath.mpf]:
     """The expression as a function of one number at mpmath's working precision."""
-    return sp.lambdify(x, expression, "mpmath", cse=False)
+    numbers = {root: root.evalf(ROOT_DIGITS) for root in expression.atoms(sp.CRootOf)}
+    return sp.lambdify(x, expression.xreplace(numbers), "mpmath", cse=False)
 
 
 def multiprecise(number: sp.Expr) -> mpmath.mpf:

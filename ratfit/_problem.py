@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
+from itertools import combinations
 
 import sympy as sp
 
-from ratfit._condition import AbstractCondition
+from ratfit._condition import AbstractCondition, AbstractPointCondition
 from ratfit._form import AbstractForm
 from ratfit._parse import RatfitError, check_name, nearest
-from ratfit._target import Exact, Parameter, Target, check_domain, exact
+from ratfit._target import INSIDE, Exact, Parameter, Target, at_values, check_domain, exact, sample_values
 
 MAX_CONDITIONS = 200
 
@@ -56,6 +57,12 @@ class Problem:
         if self.variable is None or self.domain is None:
             raise RatfitError("a problem without a target needs a variable and a domain")
         object.__setattr__(self, "domain", check_domain(self.domain))
+        if isinstance(self.conditions, AbstractCondition) or not all(
+            isinstance(c, AbstractCondition) for c in self.conditions
+        ):
+            raise RatfitError("conditions: give a list of Value, Derivative and Integral")
+        if not isinstance(self.form, AbstractForm):
+            raise RatfitError(f"form: give a Rational, Form or Power, not {self.form!r}; as in Rational(2, 1)")
         object.__setattr__(self, "conditions", tuple(self.conditions))
         object.__setattr__(self, "choice", {n: exact(v, f"choice {n}") for n, v in self.choice.items()})
         object.__setattr__(self, "references", tuple(self.references))
@@ -102,8 +109,12 @@ def _check(problem: Problem) -> None:
     for where, expression in _expressions(problem):
         allowed = known | unknowns if where == "form" else known
         for symbol in sorted(expression.free_symbols - allowed, key=str):
+            if symbol.name in {s.name for s in known}:
+                raise RatfitError(f"{where}: {symbol} is another symbol than the declared one; use the same object")
             hint = nearest(symbol.name, [s.name for s in known])
             raise RatfitError(f"{where}: nobody declared {symbol}{hint}; make it a parameter with its range")
+    _check_support(problem)
+    _check_nodes(problem)
     for condition in problem.conditions:
         condition.check(problem.domain)
         if problem.target is None and condition.equals is None:
@@ -116,8 +127,38 @@ def _check(problem: Problem) -> None:
     problem.form.shape(problem.variable, [s.name for s in known])
 
 
+def _check_support(problem: Problem) -> None:
+    """A support is a range inside the domain, and conditions at a place ask for it there."""
+    if problem.form.support is None:
+        return
+    (low, high), (left, right) = problem.domain, problem.form.support
+    for values in sample_values(set().union(*(e.free_symbols for e in (low, high, left, right)))):
+        a, b, c, d = (e.subs(values) for e in (low, left, right, high))
+        if not (a <= b and b < c and c <= d):
+            raise RatfitError(
+                f"form: the support [{left}, {right}] is empty or not inside the domain{at_values(values)}"
+            )
+    for condition in problem.conditions:
+        if isinstance(condition, AbstractPointCondition):
+            condition.check((left, right))
+
+
+def _check_nodes(problem: Problem) -> None:
+    """Places must not hold the variable, and must not meet inside the ranges of the parameters."""
+    points = [c for c in problem.conditions if isinstance(c, AbstractPointCondition)]
+    for condition in problem.conditions:
+        fixed = [e for e in condition.expressions() if e is not getattr(condition, "weight", None)]
+        if any(e.has(problem.variable) for e in fixed):
+            raise RatfitError(f"{condition.kind}: place and equals must not hold the variable {problem.variable}")
+    for a, b in combinations(points, 2):
+        distance = a.at - b.at
+        signs = [sp.sign(distance.subs(values)) for values in sample_values(distance.free_symbols, INSIDE)]
+        if distance.free_symbols and len(set(signs)) > 1:
+            raise RatfitError(f"the places {a.at} and {b.at} meet inside the ranges of the parameters; narrow them")
+
+
 def _check_names(problem: Problem) -> None:
-    names = [s.name for s in (problem.variable, *problem.parameters, *problem.form.named)]
+    names = [problem.variable.name, *(p.name for p in problem.parameters), *problem.form.names]
     for name in names:
         check_name(name, "name")
     for name in names:

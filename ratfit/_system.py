@@ -8,11 +8,16 @@ from functools import cached_property, lru_cache
 import sympy as sp
 
 from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivative, Integral
-from ratfit._deadline import OutOfTime, time_limit
+from ratfit._deadline import TimeLimit
+from ratfit._field import is_zero
 from ratfit._form import Rational, Shape
+from ratfit._generators import sampled
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
 from ratfit._target import INTEGRAL_SECONDS, sample_values
+
+TINY = 1e-40
+"""Places closer than this at 50 digits are compared exactly."""
 
 MAX_POLE = 10
 """Highest order of a pole of the form's factor at a node that the linear route multiplies away."""
@@ -103,9 +108,14 @@ def _vanishes_by_parity(problem: Problem, at: sp.Expr, order: int) -> bool:
     return order % 2 == (form.parity == "even") and 0 in form.exponents()[1]
 
 
+@lru_cache(maxsize=1000)
 def same(a: sp.Expr, b: sp.Expr) -> bool:
-    """Whether two places are the same; a difference that does not expand to zero counts as one."""
-    return a == b or sp.expand(a - b) == 0
+    """Whether two places are the same, however they are written."""
+    if a == b:
+        return True
+    if not (a.is_Rational and b.is_Rational) and all(abs(v) < TINY for v in sampled(a - b)):
+        return is_zero(a - b) is True
+    return False
 
 
 def rows(system: System) -> list[tuple[int, list[sp.Expr]]]:
@@ -173,16 +183,25 @@ def _ordered(a: sp.Expr, b: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
 def _integrated(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
     if integrand == 0:
         return sp.S.Zero
-    try:
-        with time_limit(INTEGRAL_SECONDS):
-            value = sp.integrate(sp.expand(integrand), (x, *over))
-    except OutOfTime:
-        value = sp.S.NaN
-    if value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo):
+    with TimeLimit(INTEGRAL_SECONDS) as limit:
+        value = sp.integrate(sp.expand(integrand), (x, *over))
+    if limit.passed or value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo):
         raise RatfitError(
             f"the integral of {integrand} over [{over[0]}, {over[1]}] has no closed form; choose another weight"
         )
     return value
+
+
+def integral_of(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
+    """The integral of a fraction: of any numerator that sympy can do over a constant, or of u'/u**p with p >= 2.
+
+    Raises RatfitError for what is of neither kind, or diverges.
+    """
+    if not denominator.has(x):
+        return _integrated(numerator, x, over) / denominator
+    primitive = _primitive(numerator, denominator, x)
+    ends = [sp.limit(primitive, x, end) if end.is_infinite else primitive.subs(x, end) for end in over]
+    return ends[1] - ends[0]
 
 
 def _hermite_rows(
@@ -219,7 +238,7 @@ def factor_series(factor: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> tup
         return 0, [sp.S.One]
     for pole in range(MAX_POLE + 1):
         try:
-            return pole, taylor(sp.together(factor * (x - at) ** pole), x, at, order + pole)
+            return pole, taylor(sp.cancel(factor * (x - at) ** pole), x, at, order + pole)
         except RatfitError:
             continue
     raise RatfitError(f"form: the factor {factor} has no power series at {x} = {at}; state no condition there")
@@ -264,8 +283,7 @@ def _residual(system: System, condition: AbstractCondition, demand: sp.Expr) -> 
     if isinstance(condition, Integral):
         inside, rest = integral_parts(system.problem, condition)
         numerator = condition.weight * system.shape.factor * system.shape.numerator
-        primitive = primitive_of(numerator, system.shape.denominator, x)
-        return primitive.subs(x, inside[1]) - primitive.subs(x, inside[0]) + rest - demand
+        return integral_of(numerator, system.shape.denominator, x, inside) + rest - demand
     assert isinstance(condition, AbstractPointCondition)
     value = sp.diff(system.shape.expression, x, condition.order).subs(x, condition.at)
     if value.has(sp.nan, sp.zoo):
@@ -273,15 +291,8 @@ def _residual(system: System, condition: AbstractCondition, demand: sp.Expr) -> 
     return value - demand
 
 
-def primitive_of(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    """A primitive of numerator/denominator in closed form: of a polynomial, or of u'/u**p with p >= 2.
-
-    Raises RatfitError for what is of neither kind.
-    """
-    if not denominator.has(x):
-        polynomial = sp.expand(sp.cancel(numerator))
-        if polynomial.is_polynomial(x):
-            return sp.integrate(polynomial, x) / denominator
+def _primitive(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol) -> sp.Expr:
+    """A primitive of u'/u**p."""
     constant, dependent = denominator.as_independent(x, as_Add=False)
     base, exponent = dependent.as_base_exp()
     if exponent.is_Integer and exponent >= 2:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -10,7 +11,7 @@ from typing import TypeAlias
 import mpmath
 import sympy as sp
 
-from ratfit._deadline import OutOfTime, time_limit
+from ratfit._deadline import TimeLimit
 from ratfit._parse import RatfitError, check_name, parse_expression
 
 Exact: TypeAlias = sp.Expr | int | float | Fraction | str
@@ -18,8 +19,10 @@ Exact: TypeAlias = sp.Expr | int | float | Fraction | str
 INTEGRAL_SECONDS = 5.0
 """How long sympy may look for the closed form of an integral of the target before the person is asked to state it."""
 
+INSIDE = ("1/1000", "1/8", "1/4", "3/8", "1/2", "5/8", "3/4", "7/8", "999/1000")
+"""Fractions of a parameter's range at which signs are looked at: near both ends, and between."""
+
 _JUMPING = (sp.sign, sp.floor, sp.ceiling, sp.Heaviside, sp.Piecewise)
-_KINKED = (*_JUMPING, sp.Abs, sp.Min, sp.Max)
 
 
 def exact(value: Exact, what: str = "value") -> sp.Expr:
@@ -28,14 +31,15 @@ def exact(value: Exact, what: str = "value") -> sp.Expr:
     Raises RatfitError for what is neither.
     """
     if isinstance(value, sp.Expr):
-        return value
+        decimals = {number: sp.Rational(str(number)) for number in value.atoms(sp.Float)}
+        return value.xreplace(decimals)
     if isinstance(value, str):
         return parse_expression(value, {}, what)
-    if isinstance(value, bool) or not isinstance(value, (int, float, Fraction)):
-        raise RatfitError(f"{what}: {value!r} is not a number, a text or a sympy expression")
-    if isinstance(value, float):
-        return parse_expression(repr(value), {}, what)
-    return sp.Rational(value)
+    if isinstance(value, numbers.Rational) and not isinstance(value, bool):
+        return sp.Rational(int(value.numerator), int(value.denominator))
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        return parse_expression(repr(float(value)), {}, what)
+    raise RatfitError(f"{what}: {value!r} is not a real number, a text or a sympy expression")
 
 
 class Parameter(sp.Symbol):
@@ -112,28 +116,21 @@ class Target:
                 return value
         low, high = self.domain
         sides = [-1] if at == high else [1] if at == low else [1, -1]
-        if len(sides) == 2 and not self.expression.has(*_KINKED):
-            value = _substituted(_moved(self.expression, self.variable, at, 1, order))
-            if value is not None:
-                return value
-        values = [_one_sided(self.expression, self.variable, at, side, order) for side in sides]
-        if len(values) == 2 and sp.simplify(values[0] - values[1]) != 0:
+        found = [_one_sided(self.expression, self.variable, at, side, order) for side in sides]
+        if len(found) == 2 and not _numerically_equal(*found):
             raise RatfitError(
-                f"the target's derivative of order {order} at {self.variable} = {at} is {values[1]} from the left "
-                f"and {values[0]} from the right; state it with equals"
+                f"the target's derivative of order {order} at {self.variable} = {at} is {found[1]} from the left "
+                f"and {found[0]} from the right; state it with equals"
             )
-        return values[0]
+        return found[0]
 
     def integral(self, weight: sp.Expr, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
         """The integral of weight times the target; raises RatfitError when no closed form is found in time."""
         advice = "; state its value with equals"
-        try:
-            with time_limit(INTEGRAL_SECONDS):
-                value = sp.integrate(weight * self.expression, (self.variable, *over))
-        except OutOfTime:
-            raise RatfitError(
-                f"no closed form of the target's integral within {INTEGRAL_SECONDS:g} s{advice}"
-            ) from None
+        with TimeLimit(INTEGRAL_SECONDS) as limit:
+            value = sp.integrate(weight * self.expression, (self.variable, *over))
+        if limit.passed:
+            raise RatfitError(f"no closed form of the target's integral within {INTEGRAL_SECONDS:g} s{advice}")
         if not value.is_finite and (value.is_infinite or value.has(sp.nan, sp.zoo, sp.oo)):
             raise RatfitError("the target's integral diverges; choose a weight or range for which it is finite")
         if value.has(sp.Integral, sp.Piecewise):
@@ -146,6 +143,8 @@ def check_domain(domain: tuple[Exact, Exact]) -> tuple[sp.Expr, sp.Expr]:
     if not isinstance(domain, (tuple, list)) or len(domain) != 2:
         raise RatfitError(f"domain: two ends are needed, low and high, not {domain!r}")
     low, high = exact(domain[0], "domain, low"), exact(domain[1], "domain, high")
+    if low.has(sp.I) or high.has(sp.I):
+        raise RatfitError(f"domain: [{low}, {high}] must be made of real numbers")
     for values in sample_values(low.free_symbols | high.free_symbols):
         if not low.subs(values) < high.subs(values):
             raise RatfitError(f"domain: [{low}, {high}] is empty or reversed{at_values(values)}; low must be < high")
@@ -186,6 +185,15 @@ def at_values(values: Mapping[sp.Symbol, sp.Expr]) -> str:
 
 _DISTANCE = sp.Dummy("distance", positive=True)
 """The distance from a place: positive, so that sympy knows sqrt(distance**2) to be the distance."""
+
+
+def _numerically_equal(a: sp.Expr, b: sp.Expr) -> bool:
+    """Whether two numbers agree to 15 digits at a sampled place of their symbols."""
+    if a == b:
+        return True
+    values = sample_values(a.free_symbols | b.free_symbols, ("2/7",))[0]
+    left, right = (sp.N(e.subs(values), 20) for e in (a, b))
+    return bool(abs(left - right) <= sp.Float("1e-15") * (1 + abs(left)))
 
 
 def _moved(expression: sp.Expr, variable: sp.Symbol, at: sp.Expr, side: int, order: int) -> sp.Expr:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import mpmath
@@ -12,12 +13,12 @@ from ratfit._condition import AbstractCondition, AbstractPointCondition, Integra
 from ratfit._field import Field, Related, is_zero
 from ratfit._fit import Candidate, Checked
 from ratfit._fraction import presentable, reduced
-from ratfit._generators import DIGITS
+from ratfit._generators import DIGITS, sampled
 from ratfit._parse import RatfitError
-from ratfit._poles import compiled, multiprecise, poles
+from ratfit._poles import compiled, endpoint, multiprecise, poles, polynomial_roots
 from ratfit._solver import Solution
-from ratfit._system import System, factor_series, integral_parts, primitive_of, taylor
-from ratfit._target import Parameter, at_values, sample_values
+from ratfit._system import System, factor_series, integral_of, integral_parts, taylor
+from ratfit._target import at_values, sample_values
 
 TOLERANCE = mpmath.mpf("1e-30")
 """A residual at 50 digits below this, relative to the size of the demand, counts as zero."""
@@ -33,17 +34,57 @@ def verify(system: System, solution: Solution) -> Candidate:
     shape, x = system.shape, system.problem.variable
     if solution.nature:
         return Candidate(shape.factor * solution.numerator / solution.denominator, reason=solution.nature)
-    numerator, denominator, common = reduced(solution.numerator, solution.denominator, x)
-    if denominator == 0:
+    candidate = _without_common_factors(shape.factor, solution, x)
+    if candidate.denominator == 0:
         return Candidate(sp.nan, reason="the denominator vanishes identically")
-    expression = presentable(shape.factor, numerator, denominator, x, _middle(system))
-    free = {s: r for s, r in solution.free.items() if s in expression.free_symbols}
+    expression = presentable(candidate.factor, candidate.numerator, candidate.denominator, x, _middle(system))
+    free = {s: r for s, r in solution.free.items() if _depends(expression, s)}
+    idle = {s: sp.S.One for s in solution.free if s in expression.free_symbols and s not in free}
+    if idle:
+        return verify(system, Solution(solution.numerator.subs(idle), solution.denominator.subs(idle), free))
     checked = tuple(
-        _check(system, condition, demand, numerator, denominator, expression)
-        for condition, demand in zip(system.problem.conditions, system.demands, strict=True)
+        _check(system, condition, demand, candidate, expression)
+        for condition, demand in zip(system.conditions, system.demands, strict=True)
     )
-    reason = _failure(checked, common) or ("" if free else _pole(system, denominator))
+    reason = _failure(checked, candidate.common) or ("" if free else _pole(system, candidate.denominator))
     return Candidate(expression, free, checked, reason)
+
+
+@dataclass(frozen=True)
+class _Reduced:
+    """factor*numerator/denominator without common factors, and what was cancelled."""
+
+    factor: sp.Expr
+    numerator: sp.Expr
+    denominator: sp.Expr
+    common: sp.Expr
+
+
+def _without_common_factors(factor: sp.Expr, solution: Solution, x: sp.Symbol) -> _Reduced:
+    """The form's factor goes into the fraction where it shares a zero with it, and stays in front where it does not."""
+    above, below = sp.fraction(sp.together(factor))
+    merged = reduced(solution.numerator * above, solution.denominator * below, x) if factor.has(x) else None
+    if merged is not None and merged[2] != 1:
+        return _Reduced(sp.S.One, *merged)
+    return _Reduced(factor, *reduced(solution.numerator, solution.denominator, x))
+
+
+def _depends(expression: sp.Expr, symbol: sp.Symbol) -> bool:
+    """Whether an expression changes with a symbol that occurs in it; a free name may cancel unseen."""
+    if symbol not in expression.free_symbols:
+        return False
+    others = expression.free_symbols - {symbol}
+    low, high = (getattr(symbol, end, None) for end in ("low", "high"))
+    values = (
+        sample_values({symbol}, ("1/7", "4/7"))
+        if low is not None and high is not None
+        else [{symbol: sp.S(3)}, {symbol: sp.Rational(17, 5)}]
+    )
+    for place in sample_values(others, ("2/7", "5/7")):
+        found = [sp.N(expression.subs(place).subs(v), 20) for v in values]
+        if not abs(found[0] - found[1]) <= sp.Float("1e-12") * (1 + abs(found[0])):
+            return True
+    return False
 
 
 def _middle(system: System) -> sp.Expr:
@@ -55,16 +96,11 @@ def _middle(system: System) -> sp.Expr:
 
 
 def _check(
-    system: System,
-    condition: AbstractCondition,
-    demand: sp.Expr,
-    numerator: sp.Expr,
-    denominator: sp.Expr,
-    expression: sp.Expr,
+    system: System, condition: AbstractCondition, demand: sp.Expr, candidate: _Reduced, expression: sp.Expr
 ) -> Checked:
     """One condition, exactly and at 50 digits."""
     try:
-        exact = is_zero(_found_exactly(system, condition, numerator, denominator) - demand)
+        exact = is_zero(_found_exactly(system, condition, candidate) - demand)
         residual = _numerical_residual(system, condition, demand, expression)
     except Related:
         return Checked(condition, demand, None, None)
@@ -80,47 +116,51 @@ def _size(demand: sp.Expr) -> mpmath.mpf:
     return abs(multiprecise(demand.subs(values)))
 
 
-def _found_exactly(system: System, condition: AbstractCondition, numerator: sp.Expr, denominator: sp.Expr) -> sp.Expr:
+def _found_exactly(system: System, condition: AbstractCondition, candidate: _Reduced) -> sp.Expr:
     """The number that the candidate gives, in closed form; RatfitError where it is infinite."""
+    x = system.problem.variable
     if isinstance(condition, Integral):
-        (low, high), rest = integral_parts(system.problem, condition)
-        x = system.problem.variable
-        primitive = primitive_of(condition.weight * system.shape.factor * numerator, denominator, x)
-        return primitive.subs(x, high) - primitive.subs(x, low) + rest
+        over, rest = integral_parts(system.problem, condition)
+        return (
+            integral_of(condition.weight * candidate.factor * candidate.numerator, candidate.denominator, x, over)
+            + rest
+        )
     assert isinstance(condition, AbstractPointCondition)
     if system.shape.power is not None:
-        return _power_derivative(numerator, system.problem.variable, condition)
-    return _quotient_derivative(system, condition, numerator, denominator)
+        return _power_derivative(candidate.numerator, system.shape.power[0], x, condition)
+    return _quotient_derivative(candidate, x, condition)
 
 
-def _power_derivative(expression: sp.Expr, x: sp.Symbol, condition: AbstractPointCondition) -> sp.Expr:
-    """A free exponent n > 2 is written as 2 plus something positive: then sympy knows that 0**(n - 2) is 0."""
-    exponents = [s for s in expression.free_symbols if isinstance(s, Parameter) and s.high == sp.oo]
-    excess = {s: sp.Dummy(positive=True) for s in exponents}
-    raised = expression.subs({s: s.low + e for s, e in excess.items()})
-    derivative = sp.powsimp(sp.expand(sp.diff(raised, x, condition.order)), combine="exp")
-    return derivative.subs(x, condition.at).subs({e: s - s.low for s, e in excess.items()})
+def _power_derivative(expression: sp.Expr, base: sp.Expr, x: sp.Symbol, condition: AbstractPointCondition) -> sp.Expr:
+    """The derivative of A + B*base**n; at the base's zero the exponent decides whether it is zero or infinite."""
+    order = condition.order
+    power = next((p for p in expression.atoms(sp.Pow) if p.base == base and not p.exp.is_Integer), None)
+    place = base.subs(x, condition.at)
+    if power is None or is_zero(place) is not True:
+        return sp.diff(expression, x, order).subs(x, condition.at)
+    amplitude = expression.xreplace({power: sp.S.Zero})
+    if any(excess <= 0 for excess in sampled(power.exp - order)):
+        raise RatfitError(f"{power} has no finite derivative of order {order} at {x} = {condition.at}")
+    return sp.diff(amplitude, x, order).subs(x, condition.at)
 
 
-def _quotient_derivative(
-    system: System, condition: AbstractPointCondition, numerator: sp.Expr, denominator: sp.Expr
-) -> sp.Expr:
+def _quotient_derivative(candidate: _Reduced, x: sp.Symbol, condition: AbstractPointCondition) -> sp.Expr:
     """From the Taylor series of factor, numerator and denominator, divided in the exact field.
 
     Differentiating the quotient itself would double its size with every order.
     """
-    x, at, order = system.problem.variable, condition.at, condition.order
-    pole, cleared = factor_series(system.shape.factor, x, at, order)
-    series = [cleared, *(taylor(p, x, at, order + pole) for p in (numerator, denominator))]
+    at, order = condition.at, condition.order
+    pole, cleared = factor_series(candidate.factor, x, at, order)
+    series = [cleared, *(taylor(p, x, at, order + pole) for p in (candidate.numerator, candidate.denominator))]
     field = Field([c for s in series for c in s])
     factor, above, below = ([field.encode(c) for c in s] for s in series)
     quotient = _divided(field, above, below)
     if any(quotient[:pole]):
         raise RatfitError(f"the candidate has a pole at {x} = {at}")
-    shifted = quotient[pole:]
+    # The cleared factor is factor*(x - at)**pole, so its coefficients start where the quotient's are due.
     total = field.zero
-    for j in range(min(order, len(factor) - 1) + 1):
-        total = total + field.multiply(shifted[order - j], factor[j])
+    for j in range(min(order + pole, len(factor) - 1) + 1):
+        total = total + field.multiply(quotient[order + pole - j], factor[j])
     return field.decode(total) * sp.factorial(order)
 
 
@@ -159,8 +199,10 @@ def _numerical(
     if isinstance(condition, Integral):
         (low, high), rest = integral_parts(system.problem, condition)
         function = compiled((condition.weight * expression).subs(values), x)
-        ends = [multiprecise(end.subs(values)) for end in (low, high)]
-        return mpmath.quad(function, ends) + multiprecise(rest.subs(values))
+        places = _smooth_pieces(
+            condition.weight.subs(values), x, endpoint(low.subs(values)), endpoint(high.subs(values))
+        )
+        return mpmath.quad(function, places) + multiprecise(rest.subs(values))
     assert isinstance(condition, AbstractPointCondition)
     at = condition.at.subs(values)
     low, high = (end.subs(values) for end in system.problem.support())
@@ -170,6 +212,12 @@ def _numerical(
         return mpmath.diff(lambda distance: function(multiprecise(at) + distance), 0, condition.order, direction=side)
     except ZeroDivisionError:
         raise RatfitError(f"the candidate has a pole at {x} = {condition.at}") from None
+
+
+def _smooth_pieces(weight: sp.Expr, x: sp.Symbol, low: mpmath.mpf, high: mpmath.mpf) -> list[mpmath.mpf]:
+    """The ends of a range and the kinks of the weight between them: quadrature needs smooth pieces."""
+    kinks = [r.real for a in weight.atoms(sp.Abs) if a.args[0].is_polynomial(x) for r in polynomial_roots(a.args[0], x)]
+    return [low, *sorted(k for k in kinks if low < k < high), high]
 
 
 def _failure(checked: tuple[Checked, ...], common: sp.Expr) -> str:
@@ -199,9 +247,15 @@ def _pole(system: System, denominator: sp.Expr) -> str:
 
 
 def _target_infinite(system: System, values: Mapping[sp.Symbol, sp.Expr], at: mpmath.mpf) -> bool:
+    """Whether the target grows beyond bounds on the way to a place inside the support, as its own poles do."""
     target = system.problem.target
     if target is None:
         return False
-    place = sp.nsimplify(at, rational=True, tolerance=1e-30)
-    value = target.expression.subs(values).subs(target.variable, place)
-    return bool(value.has(sp.zoo, sp.oo))
+    low, high = (end.subs(values) for end in system.problem.support())
+    side = 1 if at < (endpoint(low) + endpoint(high)) / 2 else -1
+    function = compiled(target.expression.subs(values), target.variable)
+    try:
+        near, far = (abs(function(at + side * mpmath.mpf(step))) for step in ("1e-12", "1e-6"))
+    except ZeroDivisionError:
+        return True
+    return bool(near > 1000 * far)

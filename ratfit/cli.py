@@ -173,7 +173,7 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
 
 
 def _refused(fit: Fit) -> Fit:
-    names = ", ".join(map(str, fit.free)) or "the choice among several answers"
+    names = ", ".join(map(str, fit.free)) or "a choice among several answers"
     reason = f"--unique: the conditions leave {names} open; add a condition"
     return Fit(fit.problem, fit.status, fit.route, (), fit.rejected, (reason,), fit.equations)
 

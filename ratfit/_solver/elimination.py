@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import sympy as sp
 
 from ratfit._field import Field
+from ratfit._generators import sampled_inside
 from ratfit._parse import RatfitError
 from ratfit._solver.solution import Undecided
 
@@ -46,6 +47,9 @@ def solutions(equations: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol]) -> It
         yield from solutions(free.equations, [u for u in unknowns if u != free.unknown])
         return
     for symbol, value, rest in found:
+        if not value.has(*unknowns) and is_complex(value):
+            yield {symbol: value}  # named, so that it can be rejected by name; nothing real follows from it
+            continue
         others = [u for u in unknowns if u != symbol]
         for assignment in solutions([e.subs(symbol, value) for e in rest], others):
             yield {**assignment, symbol: _normal(value.subs(assignment))}
@@ -168,12 +172,21 @@ def _roots(polynomial: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
         a, b, c = coefficients
         root = sp.sqrt(sp.factor(sp.expand(b**2 - 4 * a * c)))
         return [_normal((-b + sign * root) / (2 * a)) for sign in (1, -1)]
+    if all(c.is_Rational for c in coefficients):
+        return sp.Poly(polynomial, symbol).all_roots(radicals=False)
     roots = sp.roots(sp.Poly(polynomial, symbol))
     if sum(roots.values()) == degree:
         return list(roots)
-    if all(c.is_Rational for c in coefficients):
-        return sp.Poly(polynomial, symbol).all_roots()
     raise Undecided(f"{symbol} is a root of a polynomial of degree {degree} that has no closed form")
+
+
+def is_complex(value: sp.Expr) -> bool:
+    """Whether a value is not real all over the ranges of its parameters."""
+    try:
+        sampled_inside(value)
+    except RatfitError:
+        return True
+    return False
 
 
 def _normal(value: sp.Expr) -> sp.Expr:

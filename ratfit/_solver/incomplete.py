@@ -11,7 +11,7 @@ from itertools import combinations, islice
 import sympy as sp
 
 from ratfit._field import Field
-from ratfit._solver.elimination import solutions
+from ratfit._solver.elimination import is_complex, solutions
 from ratfit._solver.linear import fractions
 from ratfit._solver.solution import Solution
 from ratfit._system import System, columns, completed, rows
@@ -30,6 +30,10 @@ def solve_incomplete(system: System) -> list[Solution]:
     equations = [field.decode(field.determinant([[field.encode(e) for e in row] for row in minor])) for minor in minors]
     found = []
     for assignment in solutions(equations, symbols):
+        if bad := [s for s, value in assignment.items() if is_complex(value)]:
+            nature = f"complex: the derivative {bad[0]} that nobody stated would be {assignment[bad[0]]}"
+            found.append(Solution(system.shape.numerator, system.shape.denominator, nature=nature))
+            continue
         open_ = {s: (-sp.oo, sp.oo) for s in symbols if s not in assignment}
         for solution in fractions(system, [[e.subs(assignment) for e in row] for row in matrix]):
             found.append(

@@ -6,11 +6,9 @@ from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
-from ratfit._generators import sampled
-from ratfit._parse import RatfitError
-from ratfit._solver.elimination import Assignment, solutions
+from ratfit._solver.elimination import Assignment, is_complex, solutions
 from ratfit._solver.incomplete import solve_incomplete
-from ratfit._solver.solution import Solution
+from ratfit._solver.solution import Solution, Undecided
 from ratfit._system import System, polynomial_equations
 
 
@@ -26,6 +24,8 @@ def solve_polynomial(system: System) -> list[Solution]:
         return solve_incomplete(system)
     shape = system.shape
     equations = polynomial_equations(system)
+    if not all(e.is_polynomial(*shape.unknowns) for e in equations):
+        raise Undecided("the equations are not polynomial in the unknowns of this form, which no route here solves")
     found = []
     for fixed in _patches(shape.unknowns) if shape.homogeneous else [{}]:
         unknowns = [u for u in shape.unknowns if u not in fixed]
@@ -46,14 +46,6 @@ def _patches(unknowns: Sequence[sp.Symbol]) -> Iterator[Assignment]:
 def _solution(system: System, values: Assignment) -> Solution:
     shape = system.shape
     free = {u: (-sp.oo, sp.oo) for u in shape.unknowns if u not in values}
-    complex_ = next((u for u, v in values.items() if _is_complex(v)), None)
+    complex_ = next((u for u, v in values.items() if is_complex(v)), None)
     nature = f"complex: {complex_} = {values[complex_]}" if complex_ is not None else ""
     return Solution(shape.numerator.subs(values), shape.denominator.subs(values), free, nature)
-
-
-def _is_complex(value: sp.Expr) -> bool:
-    try:
-        sampled(value)
-    except RatfitError:
-        return True
-    return value.has(sp.I)

@@ -2,14 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import sympy as sp
 
-from ratfit._condition import Integral
-from ratfit._field import is_zero, sampled
+from ratfit._condition import AbstractPointCondition
+from ratfit._field import is_zero
+from ratfit._generators import sampled
 from ratfit._parse import RatfitError
 from ratfit._solver.solution import Solution, Undecided
 from ratfit._system import System, same
-from ratfit._target import Parameter
+from ratfit._target import INSIDE, Parameter, sample_values
+
+Demand = tuple[AbstractPointCondition, sp.Expr]
+
+
+@dataclass(frozen=True)
+class Exponent:
+    """An exponent that the conditions at the base's zero allow: `symbol` with its open range, or a number.
+
+    `factor` is B where these conditions fix it, else None.
+    """
+
+    symbol: sp.Expr
+    range: tuple[sp.Expr, sp.Expr] | None
+    factor: sp.Expr | None
 
 
 def solve_power(system: System) -> list[Solution]:
@@ -17,76 +34,101 @@ def solve_power(system: System) -> list[Solution]:
 
     Arguments: a system whose form is a Power, with a value at the base's zero c (it gives A). Conditions at c bound
     n from below; one condition elsewhere gives B, two give n. Raises RatfitError for conditions of other kinds,
-    Undecided for three or more conditions elsewhere than at c.
+    Undecided where nothing or too much is asked elsewhere than at c.
     """
-    x = system.problem.variable
-    base, n = system.shape.power  # type: ignore[misc]
+    assert system.shape.power is not None
+    x, (base, n) = system.problem.variable, system.shape.power
     c = sp.solve(base, x)[0]
-    pairs = list(zip(system.problem.conditions, system.demands, strict=True))
-    if any(isinstance(condition, Integral) for condition, _ in pairs) or system.shape.factor != 1:
+    points = [
+        (k, d) for k, d in zip(system.conditions, system.demands, strict=True) if isinstance(k, AbstractPointCondition)
+    ]
+    if len(points) < len(system.conditions) or system.shape.factor != 1:
         raise RatfitError("the power route takes values and derivatives of A + B*base**n without a factor")
-    at_zero = {k.order: d for k, d in pairs if same(k.at, c)}  # type: ignore[attr-defined]
-    elsewhere = [(k, d) for k, d in pairs if not same(k.at, c)]  # type: ignore[attr-defined]
+    at_zero = {k.order: d for k, d in points if same(k.at, c)}
+    elsewhere = sorted(((k, d) for k, d in points if not same(k.at, c)), key=lambda p: p[0].order)
     if 0 not in at_zero:
         raise RatfitError(f"the power route needs a value at {x} = {c}, where the base {base} vanishes")
     amplitude = at_zero.pop(0)
     if not elsewhere:
         raise Undecided(f"nothing fixes the factor of the power; add a value at another place than {x} = {c}")
-    found = _exponents_at_zero(at_zero, sp.diff(base, x))
-    solutions = []
-    for exponent, slope in found:
-        solutions += _with_conditions_elsewhere(system, amplitude, exponent, slope, elsewhere, n)
-    return solutions
+    found = []
+    for exponent in _exponents(at_zero, sp.diff(base, x), n.name):
+        found += _fitted(system, amplitude, exponent, elsewhere)
+    return found
 
 
-def _exponents_at_zero(
-    demands: dict[int, sp.Expr], slope: sp.Expr
-) -> list[tuple[sp.Expr | tuple[sp.Expr, sp.Expr], sp.Expr | None]]:
-    """The exponents that derivatives at the base's zero allow: (exponent or open range, B if it is fixed).
+def _exponents(demands: dict[int, sp.Expr], slope: sp.Expr, name: str) -> list[Exponent]:
+    """The exponents that derivatives at the base's zero allow.
 
     base**n has a k-th derivative of zero there for every real n > k, and for the whole numbers n < k; it has one
     that is not zero for n = k alone.
     """
-    orders = sorted(k for k, d in demands.items() if is_zero(d) is not False)
-    fixed = [(k, d) for k, d in sorted(demands.items()) if k not in orders]
+    vanishing = sorted(k for k, d in demands.items() if is_zero(d) is not False)
+    fixed = [(k, d) for k, d in sorted(demands.items()) if k not in vanishing]
     if len(fixed) > 1:
         return []
-    lower = orders[-1] if orders else 0
     if fixed:
         k, demand = fixed[0]
-        return [] if k in orders else [(sp.Integer(k), demand / (sp.factorial(k) * slope**k))]
-    whole = [sp.Integer(n) for n in range(1, lower) if n not in orders]
-    return [((sp.Integer(lower), sp.oo), None), *((n, None) for n in whole)]
+        return [Exponent(sp.Integer(k), None, demand / (sp.factorial(k) * slope**k))]
+    lower = vanishing[-1] if vanishing else 0
+    whole = [Exponent(sp.Integer(k), None, None) for k in range(1, lower) if k not in vanishing]
+    range_ = (sp.Integer(lower), sp.oo)
+    return [Exponent(Parameter(name, *range_), range_, None), *whole]
 
 
-def _with_conditions_elsewhere(system, amplitude, exponent, factor, elsewhere, n) -> list[Solution]:
-    x = system.problem.variable
-    base, _ = system.shape.power
-    symbol = Parameter(n.name, *exponent) if isinstance(exponent, tuple) else exponent
-    free = {symbol: exponent} if isinstance(exponent, tuple) else {}
-    remaining = list(elsewhere)
+def _fitted(system: System, amplitude: sp.Expr, exponent: Exponent, elsewhere: list[Demand]) -> list[Solution]:
+    """B from the first condition elsewhere, and a free exponent from the second."""
+    assert system.shape.power is not None
+    x, (base, _) = system.problem.variable, system.shape.power
+    factor, remaining = exponent.factor, list(elsewhere)
     if factor is None:
         condition, demand = remaining.pop(0)
-        unit = sp.diff(base**symbol, x, condition.order).subs(x, condition.at)
+        unit = sp.diff(base**exponent.symbol, x, condition.order).subs(x, condition.at)
         factor = (demand - (amplitude if condition.order == 0 else 0)) / unit
-    if remaining and free:
-        return _with_exponent(system, amplitude, factor, remaining, n, exponent)
-    return [Solution(amplitude + factor * base**symbol, sp.S.One, free)]
-
-
-def _with_exponent(system, amplitude, factor, remaining, n, range_) -> list[Solution]:
-    """Two conditions elsewhere fix the exponent: (base1/base2)**n, or n itself, equals a known ratio."""
+    if exponent.range is None or not remaining:
+        return [_solution(system, amplitude, factor, exponent.symbol, exponent.range)]
     if len(remaining) > 1:
         raise Undecided("more than two conditions away from the base's zero leave no exponent in closed form")
-    x = system.problem.variable
-    base, _ = system.shape.power
-    condition, demand = remaining[0]
-    value = sp.diff(amplitude + factor * base**n, x, condition.order).subs(x, condition.at)
-    ratio = sp.powsimp(sp.simplify(value - demand), force=True)
+    roots = _exponent_roots(system, amplitude, factor, remaining[0], exponent)
+    return [_solution(system, amplitude, factor.subs(exponent.symbol, root), root, None) for root in roots]
+
+
+def _exponent_roots(
+    system: System, amplitude: sp.Expr, factor: sp.Expr, second: Demand, exponent: Exponent
+) -> list[sp.Expr]:
+    """The exponents at which a second condition elsewhere holds too, inside the range."""
+    assert system.shape.power is not None and exponent.range is not None
+    x, (base, _) = system.problem.variable, system.shape.power
+    condition, demand = second
+    n = sp.Dummy("n", real=True)
+    value = sp.diff(amplitude + factor.subs(exponent.symbol, n) * base**n, x, condition.order).subs(x, condition.at)
+    equation = sp.powsimp(sp.expand(sp.simplify(value - demand)), force=True)
     try:
-        roots = sp.solve(ratio, n)
+        roots = sp.solve(equation, n)
     except NotImplementedError:
         raise Undecided("the exponent has no closed form") from None
-    low, high = range_
-    kept = [r for r in roots if r.is_real is not False and all(low < v < high for v in sampled(r))]
-    return [Solution(amplitude + factor.subs(n, r) * base**r, sp.S.One) for r in kept]
+    low, high = exponent.range
+    return [r for r in roots if not r.has(sp.I) and all(low < v < high for v in sampled(r))]
+
+
+def _solution(
+    system: System,
+    amplitude: sp.Expr,
+    factor: sp.Expr,
+    exponent: sp.Expr,
+    range_: tuple[sp.Expr, sp.Expr] | None,
+) -> Solution:
+    assert system.shape.power is not None
+    base, _ = system.shape.power
+    nature = "" if exponent.is_Integer else _complex_power(system, base)
+    free = {exponent: range_} if range_ is not None else {}
+    return Solution(amplitude + factor * base**exponent, sp.S.One, free, nature)
+
+
+def _complex_power(system: System, base: sp.Expr) -> str:
+    """A real power needs a base that is nowhere negative on the support; it is linear, so its ends decide."""
+    for end in system.problem.support():
+        place = base.subs(system.problem.variable, end)
+        if any(place.subs(values) < 0 for values in sample_values(place.free_symbols, INSIDE)):
+            return f"complex: the base {base} is negative at {system.problem.variable} = {end}"
+    return ""

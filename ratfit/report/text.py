@@ -43,6 +43,8 @@ def fit_text(fit: Fit, card: Card | None = None, *, unicode: bool = True) -> str
 
 
 def _headline(fit: Fit) -> str:
+    if fit.expression is None and fit.status in ("family", "several"):
+        return f"not unique ({fit.route} route)"
     words = {
         "unique": "one answer",
         "family": f"a family, {', '.join(map(str, fit.free))} free",

@@ -28,8 +28,8 @@ class AbstractCondition(ABC):
         """The number that the fit must give: `equals`, or else the target's own; RatfitError where it has none."""
 
     @abstractmethod
-    def check(self, domain: tuple[sp.Expr, sp.Expr]) -> None:
-        """Raises RatfitError for a condition that lies outside the domain."""
+    def check(self, domain: tuple[sp.Expr, sp.Expr], what: str = "domain") -> None:
+        """Raises RatfitError for a condition that lies outside the domain, or another range that `what` names."""
 
     @abstractmethod
     def expressions(self) -> tuple[sp.Expr, ...]:
@@ -51,8 +51,8 @@ class AbstractPointCondition(AbstractCondition):
             return self.equals
         return _needed(target, self).derivative(self.at, self.order)
 
-    def check(self, domain: tuple[sp.Expr, sp.Expr]) -> None:
-        _check_inside(f"{self.kind} at {self.at}", self.at, domain)
+    def check(self, domain: tuple[sp.Expr, sp.Expr], what: str = "domain") -> None:
+        _check_inside(f"{self.kind} at", self.at, domain, what)
 
     def expressions(self) -> tuple[sp.Expr, ...]:
         return (self.at,) if self.equals is None else (self.at, self.equals)
@@ -134,9 +134,9 @@ class Integral(AbstractCondition):
         target = _needed(target, self)
         return target.integral(self.weight, self.range(target.domain))
 
-    def check(self, domain: tuple[sp.Expr, sp.Expr]) -> None:
+    def check(self, domain: tuple[sp.Expr, sp.Expr], what: str = "domain") -> None:
         for end in self.over or ():
-            _check_inside("integral over", end, domain)
+            _check_inside("integral over", end, domain, what)
 
     def expressions(self) -> tuple[sp.Expr, ...]:
         return tuple(e for e in (self.weight, *(self.over or ()), self.equals) if e is not None)
@@ -148,7 +148,7 @@ def describe(condition: AbstractCondition) -> str:
         return f"{condition.kind} with {condition.place}"
     if condition.order > 1:
         return f"derivative of order {condition.order} at {condition.place}"
-    return f"{condition.kind} at {condition.place}"
+    return f"{'derivative' if condition.order else 'value'} at {condition.place}"
 
 
 def _set_exact(condition: AbstractCondition, field: str) -> None:
@@ -170,9 +170,9 @@ def _needed(target: Target | None, condition: AbstractCondition) -> Target:
     return target
 
 
-def _check_inside(what: str, at: sp.Expr, domain: tuple[sp.Expr, sp.Expr]) -> None:
+def _check_inside(kind: str, at: sp.Expr, domain: tuple[sp.Expr, sp.Expr], what: str) -> None:
     low, high = domain
     for values in sample_values(at.free_symbols | low.free_symbols | high.free_symbols):
         place = at.subs(values)
         if not (low.subs(values) <= place and place <= high.subs(values)):
-            raise RatfitError(f"{what} {at} lies outside the domain [{low}, {high}]{at_values(values)}")
+            raise RatfitError(f"{kind} {at} lies outside the {what} [{low}, {high}]{at_values(values)}")

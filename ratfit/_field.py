@@ -44,7 +44,8 @@ class Field:
         for expression in flat:
             self._basis.register_roots(expression)
         atoms = list(self._basis.atoms)
-        roots = list(self._basis.relations)
+        # Later roots may lie over earlier ones: largest first, so that each relation leads with its own root.
+        roots = list(reversed(self._basis.relations))
         self._base = sp.ZZ.frac_field(*atoms) if atoms else sp.QQ
         self._ring = ring(roots, self._base)[0] if roots else None
         self._images = {a: self._in_ring(g) for a, g in zip(atoms, self._base.gens if atoms else (), strict=True)}

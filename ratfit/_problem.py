@@ -140,7 +140,7 @@ def _check_support(problem: Problem) -> None:
             )
     for condition in problem.conditions:
         if isinstance(condition, AbstractPointCondition):
-            condition.check((left, right))
+            condition.check((left, right), "support")
 
 
 def _check_nodes(problem: Problem) -> None:
@@ -163,4 +163,6 @@ def _check_names(problem: Problem) -> None:
         check_name(name, "name")
     for name in names:
         if names.count(name) > 1:
-            raise RatfitError(f"the name {name} stands for two things; rename one")
+            raise RatfitError(
+                f"the name {name} stands for two of variable, parameter, unknown and exponent; rename one"
+            )

@@ -47,7 +47,11 @@ class System:
 
     @cached_property
     def linear(self) -> bool:
-        return self.fraction and (_constant_denominator(self) or (not self.integrals and not missing(self)))
+        if not self.fraction:
+            return False
+        if not _constant_denominator(self):
+            return not self.integrals and not missing(self)
+        return all(_is_finite_at(self, lacking.at) for lacking in missing(self))
 
     @property
     def integrals(self) -> bool:
@@ -97,6 +101,11 @@ def columns(shape: Shape) -> tuple[list[tuple[sp.Expr, sp.Expr]], bool]:
     return pairs + ([fixed] if has_fixed else []), has_fixed
 
 
+def _is_finite_at(system: System, at: sp.Expr) -> bool:
+    """Whether the form's factor is finite at a place: only there is a condition on a polynomial linear as it stands."""
+    return not system.shape.factor.xreplace({system.problem.variable: at}).has(sp.zoo, sp.nan, sp.oo)
+
+
 def _constant_denominator(system: System) -> bool:
     return not any(below.has(system.problem.variable) for _, below in columns(system.shape)[0])
 
@@ -130,7 +139,7 @@ def rows(system: System) -> list[tuple[int, list[sp.Expr]]]:
     for number, (condition, demand) in enumerate(zip(system.conditions, system.demands, strict=True)):
         if isinstance(condition, Integral):
             found.append((number, _integral_row(system, condition, demand, pairs)))
-        elif isinstance(condition, AbstractPointCondition) and plain:
+        elif isinstance(condition, AbstractPointCondition) and plain and _is_finite_at(system, condition.at):
             found.append((number, _plain_row(system, condition, demand, pairs)))
         elif isinstance(condition, AbstractPointCondition):
             found += [(number, row) for row in _hermite_rows(system, condition, demand, pairs)]

@@ -88,12 +88,7 @@ FAILS = {
 
 # Each name with why the code as it stands cannot do it; meant to empty.
 KNOWN_BUGS = {
-    "pi/7 and pi/14": "each denominator of pi gets a cosine of its own, unrelated to the others",
     "pi/9 and the root of 3": "the root of 3 lies in the field of cos(pi/18), and gets a second generator",
-    "octagon": "nested radicals are taken for unrelated: zero divisors",
-    "decagon": "nested radicals are taken for unrelated: zero divisors",
-    "nested radical": "nested radicals are taken for unrelated: zero divisors",
-    "product of nested radicals": "nested radicals are taken for unrelated: zero divisors",
 }
 
 

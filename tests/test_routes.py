@@ -291,30 +291,9 @@ ANSWERS = {
     ),
 }
 
-KNOWN_BUGS = {
-    "three real roots of a cubic": "real roots written with I (casus irreducibilis) are taken for complex",
-    "weight with a root": "verify knows polynomial integrands alone",
-    "weight that is a cosine": "verify knows polynomial integrands alone",
-    "integral to infinity": "verify cannot evaluate an infinite end",
-    "value where the factor has its pole": "verify does not cancel the factor against the numerator",
-    "value where the factor has its zero": "verify does not cancel the factor against the denominator",
-    "factor with a pole at the right end": "(x - 1)/(1 - x) is not cancelled",
-    "nodes of a pentagon": "nested radicals are taken for unrelated: a traceback",
-    "nodes of a heptagon": "cos(pi/7) and cos(pi/14) are taken for unrelated",
-    "nested radicals": "nested radicals are taken for unrelated: a traceback",
-    "power, the values in the other order": "the exponent in the factor and in the power are two symbols",
-    "power, value that is a parameter": "0 to a positive symbolic power is not recognised as 0",
-    "a scale that cancels, squared": "a free coefficient that cancels is not noticed",
-}
-
 
 def rows(table):
-    return [
-        pytest.param(
-            *row, id=name, marks=[pytest.mark.xfail(strict=True, reason=KNOWN_BUGS[name])] if name in KNOWN_BUGS else []
-        )
-        for name, row in table.items()
-    ]
+    return [pytest.param(*row, id=name) for name, row in table.items()]
 
 
 def fit_of(arguments):
@@ -361,7 +340,6 @@ def test_family_of_powers():
     assert sp.simplify(fit.expression - (1 - problem.variable) ** n) == 0
 
 
-@pytest.mark.xfail(strict=True, reason="a derivative of order 3 of a free power is not recognised as 0")
 def test_family_of_powers_above_three():
     problem = words(
         "x",
@@ -430,28 +408,21 @@ BAD_INPUT = {
         ),
         "m",
     ),
-    "an unknown under a root": (
-        ("x", "0 1", "sqrt(a*x + b)", {"unknowns": "a,b", "value": ["0;equals=1"]}),
-        "polynomial",
-    ),
 }
 
-BAD_INPUT_BUGS = dict.fromkeys(BAD_INPUT, "not refused as yet, or with a traceback")
+
+def test_a_form_that_no_route_solves_is_an_honest_no():
+    fit = fit_of(("x", "0 1", "sqrt(a*x + b)", {"unknowns": "a,b", "value": ["0;equals=1"]}))
+    assert not fit.candidates and "polynomial" in fit.reasons[0]
 
 
 @pytest.mark.parametrize("name", BAD_INPUT)
-def test_bad_input_is_refused(name, request):
-    if name in BAD_INPUT_BUGS:
-        request.node.add_marker(pytest.mark.xfail(strict=True, reason=BAD_INPUT_BUGS[name]))
+def test_bad_input_is_refused(name):
     arguments, said = BAD_INPUT[name]
     with pytest.raises(RatfitError, match=said):
         fit_of(arguments)
 
 
-ACCEPTED_AS_YET = pytest.mark.xfail(strict=True, reason="accepted as yet")
-
-
-@ACCEPTED_AS_YET
 def test_complex_for_part_of_the_range_is_rejected():
     fit = fit_of(
         (
@@ -464,13 +435,11 @@ def test_complex_for_part_of_the_range_is_rejected():
     assert not fit.candidates  # a = sqrt(m - 1/20) is not real at m = 0
 
 
-@ACCEPTED_AS_YET
 def test_a_power_of_a_negative_base_is_rejected():
     fit = fit_of(("x", "-1 1", None, {"power": "x", "value": ["0;equals=0", "1;equals=1"]}))
     assert not fit.candidates  # x**n is not real at x = -1 but for whole n
 
 
-@ACCEPTED_AS_YET
 def test_a_pole_for_some_parameters_is_found():
     bump = "1/(1 + 100*(m - 1/5)*(m - 1/2))"  # 1 + c*x with c < -1 for m between the two
     fit = fit_of(
@@ -484,7 +453,6 @@ def test_a_pole_for_some_parameters_is_found():
     assert not fit.candidates
 
 
-@ACCEPTED_AS_YET
 def test_a_choice_that_makes_a_pole_is_refused():
     problem = words("x", "0 1", "1/1", value=["0", "1"]).with_choice({"b1": -2})  # x/(2*x - 1)
     try:
@@ -500,13 +468,11 @@ def test_forced_polynomial_route_agrees_with_the_linear_one():
     assert same_function(linear.expression, polynomial.expression)
 
 
-@pytest.mark.xfail(strict=True, reason="the inner limit of 5 s swallows the outer one: bad input in place of a timeout")
 def test_a_short_timeout_in_a_long_integral_is_a_timeout():
     problem = words("exp(-x**2)*sin(x)/(1 + x**3)", "0 1", "1", value=["0"], integral=["weight=1"])
     assert rf.derive(problem, timeout=0.5).status == "timeout"
 
 
-@pytest.mark.xfail(strict=True, reason="sqrt(x**2) of a plain symbol has a kink that is not looked for")
 def test_a_kink_of_a_plain_symbol_is_seen():
     x = sp.Symbol("x")
     problem = rf.Problem(

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ratfit._lower import kernel, precision
+from ratfit._kernel import kernel, precision
 from ratfit._sampling import Setting, check_protocol, draw, setting
 
 if TYPE_CHECKING:

@@ -1033,14 +1033,16 @@ def _compiled(context: _Context, plan: _Plan) -> _Program:
 
 
 _DIGITS = 40
-_FRACTIONS = tuple(sp.Rational(*pair) for pair in ((1, 64), (1, 4), (9, 16), (13, 16), (63, 64)))
+# The places in its range where the variable is tried. None is dyadic: so the input's own rounding takes part, and an
+# ill-conditioned place does not count against an arrangement.
+_PLACES = tuple(sp.Rational(i, 61) for i in (1, 16, 29, 46, 60))
 
 _Point = dict[sp.Expr, sp.Expr]
 
 
 def _trial(context: _Context, expression: sp.Expr) -> list[tuple[_Point, Any]]:
     """Points of the ranges, and the expression's values there as far as they are real numbers."""
-    points = [_point(context, expression, i) for i in range(len(_FRACTIONS))]
+    points = [_point(context, expression, i) for i in range(len(_PLACES))]
     pairs = [(point, expression.xreplace(point).evalf(_DIGITS)) for point in points]
     return [(point, mpmath.mpmathify(sp.Float(value, _DIGITS))) for point, value in pairs if _is_number(value)]
 
@@ -1051,18 +1053,19 @@ def _is_number(value: sp.Expr) -> bool:
 
 def _point(context: _Context, expression: sp.Expr, i: int) -> _Point:
     """The i-th trial point; the variable last, for the ends of its range may name parameters."""
-    parameters = sorted(expression.free_symbols - {context.variable}, key=lambda symbol: symbol.name)
+    ends = sp.Tuple(*context.ranges.get(context.variable, ()))
+    parameters = sorted((expression.free_symbols | ends.free_symbols) - {context.variable}, key=lambda s: s.name)
     point: _Point = {}
     for j, symbol in enumerate([*parameters, context.variable]):
-        low, high = (sp.sympify(end).xreplace(point) for end in context.ranges.get(symbol, (0, 1)))
+        low, high = (end.xreplace(point) for end in sp.Tuple(*context.ranges.get(symbol, (0, 1))))
         if low.is_infinite:
             low = high - 8 if not high.is_infinite else sp.Integer(-4)
         if high.is_infinite:
             high = low + 8
-        # Each parameter walks through the fractions from another place, else all would be small and large together.
-        step = _FRACTIONS[i] if symbol == context.variable else _FRACTIONS[(2 * i + j + 1) % len(_FRACTIONS)]
+        # Over another prime, and from another place each: no two symbols are equal by accident, nor all of them large.
+        step = _PLACES[i] if symbol == context.variable else sp.Rational((14 * i + 23 * j + 15) % 66 + 1, 67)
         # A Float, for an exact number to a high power would not fit into memory.
-        point[symbol] = sp.Float(low + step * (high - low), _DIGITS)
+        point[symbol] = (low + step * (high - low)).evalf(_DIGITS)
     return point
 
 

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ratfit._lower import kernel, precision
+from ratfit._kernel import kernel, precision
 from ratfit._parse import RatfitError, nearest
 from ratfit._sampling import check_protocol, draw, setting
 

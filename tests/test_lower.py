@@ -12,7 +12,8 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratfit._lower import hoist, kernel, lower, precision, rounded
+from ratfit._kernel import hoist, kernel, precision
+from ratfit._lower import lower, rounded
 from ratfit._parse import RatfitError
 
 x, y, m = sp.symbols("x y m", real=True)

@@ -24,7 +24,7 @@ class TimeLimit:
         self.passed = False
         self._lock = threading.Lock()
         self._over = False
-        self._raised = type("OutOfTime", (OutOfTime,), {})
+        self._raised: type[OutOfTime] = type("OutOfTime", (OutOfTime,), {})  # its own, so that limits can nest
 
     def __enter__(self) -> TimeLimit:
         if self.seconds is not None:

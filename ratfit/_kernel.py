@@ -1,4 +1,4 @@
-"""A lowered expression as one compiled JAX kernel: work on parameters alone done once, one compilation for all values."""
+"""A lowered expression as one compiled JAX kernel, with the work that depends on parameters alone done once."""
 
 from __future__ import annotations
 

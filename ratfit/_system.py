@@ -8,19 +8,16 @@ from functools import cached_property, lru_cache
 import sympy as sp
 
 from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivative, Integral
-from ratfit._deadline import TimeLimit
 from ratfit._field import is_zero
 from ratfit._form import Rational, Shape
 from ratfit._generators import sampled
+from ratfit._integral import integral_of, integral_parts, integrated
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
-from ratfit._target import INTEGRAL_SECONDS, sample_values
+from ratfit._series import factor_series, taylor
 
 TINY = 1e-40
 """Places closer than this at 50 digits are compared exactly."""
-
-MAX_POLE = 10
-"""Highest order of a pole of the form's factor at a node that the linear route multiplies away."""
 
 
 @dataclass(frozen=True)
@@ -162,55 +159,9 @@ def _integral_row(
     problem = system.problem
     inside, rest = integral_parts(problem, condition)
     return [
-        _integrated(condition.weight * system.shape.factor * above, problem.variable, inside) - (demand - rest) * below
+        integrated(condition.weight * system.shape.factor * above, problem.variable, inside) - (demand - rest) * below
         for above, below in pairs
     ]
-
-
-def integral_parts(problem: Problem, condition: Integral) -> tuple[tuple[sp.Expr, sp.Expr], sp.Expr]:
-    """The range of an integral condition that lies on the fit's support, and what the value outside it adds."""
-    low, high = condition.range(problem.domain)
-    if problem.form.support is None:
-        return (low, high), sp.S.Zero
-    left, right = problem.form.support
-    inside = (_ordered(low, left)[1], _ordered(high, right)[0])
-    outside = condition.weight * problem.form.outside
-    x = problem.variable
-    return inside, _integrated(outside, x, (low, inside[0])) + _integrated(outside, x, (inside[1], high))
-
-
-def _ordered(a: sp.Expr, b: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """Two ends of ranges, the smaller first, for all values of the parameters tried."""
-    differences = [(a - b).subs(values) for values in sample_values((a - b).free_symbols)]
-    if all(d <= 0 for d in differences):
-        return a, b
-    if all(d >= 0 for d in differences):
-        return b, a
-    raise RatfitError(f"{a} and {b} change places within the ranges of the parameters; narrow them")
-
-
-def _integrated(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
-    if integrand == 0:
-        return sp.S.Zero
-    with TimeLimit(INTEGRAL_SECONDS) as limit:
-        value = sp.integrate(sp.expand(integrand), (x, *over))
-    if limit.passed or value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo):
-        raise RatfitError(
-            f"the integral of {integrand} over [{over[0]}, {over[1]}] has no closed form; choose another weight"
-        )
-    return value
-
-
-def integral_of(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
-    """The integral of a fraction: of any numerator that sympy can do over a constant, or of u'/u**p with p >= 2.
-
-    Raises RatfitError for what is of neither kind, or diverges.
-    """
-    if not denominator.has(x):
-        return _integrated(numerator, x, over) / denominator
-    primitive = _primitive(numerator, denominator, x)
-    ends = [sp.limit(primitive, x, end) if end.is_infinite else primitive.subs(x, end) for end in over]
-    return ends[1] - ends[0]
 
 
 def _hermite_rows(
@@ -241,41 +192,6 @@ def _known_derivative(system: System, condition: AbstractPointCondition, order: 
     return sp.S.Zero
 
 
-def factor_series(factor: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> tuple[int, list[sp.Expr]]:
-    """The order of the factor's pole at a node, and the Taylor coefficients of what is left when it is cleared."""
-    if factor == 1:
-        return 0, [sp.S.One]
-    for pole in range(MAX_POLE + 1):
-        try:
-            return pole, taylor(sp.cancel(factor * (x - at) ** pole), x, at, order + pole)
-        except RatfitError:
-            continue
-    raise RatfitError(f"form: the factor {factor} has no power series at {x} = {at}; state no condition there")
-
-
-def taylor(expression: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> list[sp.Expr]:
-    """Taylor coefficients 0 to `order`; RatfitError where one is not finite."""
-    if expression.is_polynomial(x):
-        return [*_shifted(expression, x, at), *[sp.S.Zero] * (order + 1)][: order + 1]
-    found = []
-    for k in range(order + 1):
-        value = expression.subs(x, at) / sp.factorial(k)
-        if value.has(sp.nan, sp.zoo, sp.oo):
-            raise RatfitError(f"{expression} has no power series at {x} = {at}")
-        found.append(value)
-        expression = sp.diff(expression, x)
-    return found
-
-
-@lru_cache(maxsize=1000)
-def _shifted(polynomial: sp.Expr, x: sp.Symbol, at: sp.Expr) -> tuple[sp.Expr, ...]:
-    """All Taylor coefficients of a polynomial, kept because every order of derivative at a node asks for them."""
-    if not polynomial.has(x):
-        return (polynomial,)
-    step = sp.Dummy("step")
-    return tuple(sp.Poly(polynomial.subs(x, at + step), step).all_coeffs()[::-1])
-
-
 def polynomial_equations(system: System) -> list[sp.Expr]:
     """The cleared equations of the polynomial route, one for each condition, as a paper would print them.
 
@@ -298,17 +214,3 @@ def _residual(system: System, condition: AbstractCondition, demand: sp.Expr) -> 
     if value.has(sp.nan, sp.zoo):
         raise RatfitError(f"the form has no value at {x} = {condition.place}; move the condition or change the factor")
     return value - demand
-
-
-def _primitive(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    """A primitive of u'/u**p."""
-    constant, dependent = denominator.as_independent(x, as_Add=False)
-    base, exponent = dependent.as_base_exp()
-    if exponent.is_Integer and exponent >= 2:
-        ratio = sp.cancel(numerator / sp.diff(base, x))
-        if not ratio.has(x):
-            return ratio * base ** (1 - exponent) / (constant * (1 - exponent))
-    raise RatfitError(
-        "form: the integral of this form is not of the kinds u'/u**p (p >= 2) and polynomial; "
-        "write the expression so, as in a*t/(b*t**2 + c)**2"
-    )

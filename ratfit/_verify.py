@@ -14,10 +14,12 @@ from ratfit._field import Field, Related, is_zero
 from ratfit._fit import Candidate, Checked
 from ratfit._fraction import presentable, reduced
 from ratfit._generators import DIGITS, sampled
+from ratfit._integral import integral_of, integral_parts
 from ratfit._parse import RatfitError
 from ratfit._poles import compiled, endpoint, multiprecise, poles, polynomial_roots
+from ratfit._series import factor_series, taylor
 from ratfit._solver import Solution
-from ratfit._system import System, factor_series, integral_of, integral_parts, taylor
+from ratfit._system import System
 from ratfit._target import at_values, sample_values
 
 TOLERANCE = mpmath.mpf("1e-30")

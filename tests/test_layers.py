@@ -16,7 +16,7 @@ LAYERS = [
     ("_deadline",),
     ("_parse", "_grammar", "_bounds"),
     ("_target", "_condition", "_form"),
-    ("_problem", "_problem_file", "_problem_text", "_inline", "_generators", "_field"),
+    ("_problem", "_problem_file", "_problem_text", "_inline", "_generators", "_field", "_integral", "_series"),
     ("_system", "_lower", "_kernel"),
     ("_solver",),
     ("_fit", "_poles", "_fraction"),

@@ -1,0 +1,71 @@
+"""Integrals in closed form: of anything that sympy can do over a constant denominator, and of u'/u**p."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from ratfit._condition import Integral
+from ratfit._deadline import TimeLimit
+from ratfit._parse import RatfitError
+from ratfit._problem import Problem
+from ratfit._target import INTEGRAL_SECONDS, sample_values
+
+
+def integral_parts(problem: Problem, condition: Integral) -> tuple[tuple[sp.Expr, sp.Expr], sp.Expr]:
+    """The range of an integral condition that lies on the fit's support, and what the value outside it adds."""
+    low, high = condition.range(problem.domain)
+    if problem.form.support is None:
+        return (low, high), sp.S.Zero
+    left, right = problem.form.support
+    inside = (_ordered(low, left)[1], _ordered(high, right)[0])
+    outside = condition.weight * problem.form.outside
+    x = problem.variable
+    return inside, integrated(outside, x, (low, inside[0])) + integrated(outside, x, (inside[1], high))
+
+
+def _ordered(a: sp.Expr, b: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """Two ends of ranges, the smaller first, for all values of the parameters tried."""
+    differences = [(a - b).subs(values) for values in sample_values((a - b).free_symbols)]
+    if all(d <= 0 for d in differences):
+        return a, b
+    if all(d >= 0 for d in differences):
+        return b, a
+    raise RatfitError(f"{a} and {b} change places within the ranges of the parameters; narrow them")
+
+
+def integrated(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
+    if integrand == 0:
+        return sp.S.Zero
+    with TimeLimit(INTEGRAL_SECONDS) as limit:
+        value = sp.integrate(sp.expand(integrand), (x, *over))
+    if limit.passed or value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo):
+        raise RatfitError(
+            f"the integral of {integrand} over [{over[0]}, {over[1]}] has no closed form; choose another weight"
+        )
+    return value
+
+
+def integral_of(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
+    """The integral of a fraction: of any numerator that sympy can do over a constant, or of u'/u**p with p >= 2.
+
+    Raises RatfitError for what is of neither kind, or diverges.
+    """
+    if not denominator.has(x):
+        return integrated(numerator, x, over) / denominator
+    primitive = _primitive(numerator, denominator, x)
+    ends = [sp.limit(primitive, x, end) if end.is_infinite else primitive.subs(x, end) for end in over]
+    return ends[1] - ends[0]
+
+
+def _primitive(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol) -> sp.Expr:
+    """A primitive of u'/u**p."""
+    constant, dependent = denominator.as_independent(x, as_Add=False)
+    base, exponent = dependent.as_base_exp()
+    if exponent.is_Integer and exponent >= 2:
+        ratio = sp.cancel(numerator / sp.diff(base, x))
+        if not ratio.has(x):
+            return ratio * base ** (1 - exponent) / (constant * (1 - exponent))
+    raise RatfitError(
+        "form: the integral of this form is not of the kinds u'/u**p (p >= 2) and polynomial; "
+        "write the expression so, as in a*t/(b*t**2 + c)**2"
+    )

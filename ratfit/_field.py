@@ -39,7 +39,7 @@ class Field:
     def __init__(self, expressions: Iterable[sp.Expr]) -> None:
         expressions = [sp.sympify(e) for e in expressions]  # Python integers to sympy's; never text
         self._basis, flat = _flattened(expressions, half_angles=False)
-        if self._basis.prefers_half_angles(flat):
+        if self._basis.prefers_half_angles(expressions, flat):
             self._basis, flat = _flattened(expressions, half_angles=True)
         for expression in flat:
             self._basis.register_roots(expression)

@@ -22,6 +22,8 @@ import sympy as sp
 from ratfit._parse import RatfitError
 from ratfit._target import INSIDE, sample_values
 
+_TURNING = (sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc)
+
 DIGITS = 50
 """Decimal digits of every numerical check of the algebra."""
 
@@ -91,9 +93,11 @@ class Generators:
     def register_angles(self, expressions: Iterable[sp.Expr]) -> None:
         """Finds, for each monomial inside a sine or cosine, the largest part that all its angles are multiples of."""
         for expression in expressions:
-            for call in expression.atoms(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc):
+            for call in expression.atoms(*_TURNING):
+                scale = 2 if self._half_angles and isinstance(call, sp.tan) else 1
                 for monomial, coefficient in _monomials(call.args[0]):
-                    self._angles[monomial] = lcm(self._angles.get(monomial, 1), int(coefficient.q))
+                    q = int((scale * coefficient).q)
+                    self._angles[monomial] = lcm(self._angles.get(monomial, 1), q)
 
     def flatten(self, expression: sp.Expr) -> sp.Expr:
         """The expression in atoms with sums, products and rational powers alone."""
@@ -117,6 +121,9 @@ class Generators:
             return sine if isinstance(e, sp.sin) else cosine
         if isinstance(e, sp.log):
             return self._logarithm(e)
+        if isinstance(e, sp.tan) and self._half_angles:
+            (c, s), _ = self._direction(e.args[0], 1)
+            return s / c
         rewritten = _rewritten(e)
         if rewritten != e:
             return self.flatten(rewritten)
@@ -170,36 +177,54 @@ class Generators:
 
     def _turn(self, angle: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
         """Cosine and sine of an angle, by the addition theorem from those of the monomials' parts."""
+        if self._half_angles:
+            (c, s), size = self._direction(angle, 2)
+            return c / size, s / size
         c, s = sp.S.One, sp.S.Zero
         for monomial, coefficient in _monomials(angle):
-            part = self._angles.setdefault(monomial, int(coefficient.q))
             if monomial is sp.pi:
-                c1, s1 = self._rational_turn(coefficient)
-                c, s = c * c1 - s * s1, s * c1 + c * s1
+                c, s = _multiplied((c, s), self._rational_turn(coefficient))
                 continue
-            if part % coefficient.q:
-                raise RatfitError(f"{angle} has no place in the exact field of this problem")
-            turns = int(coefficient * part)
-            unit = monomial / part
-            cos, sin = self._halved(unit) if self._half_angles else (self._atom(sp.cos(unit)), self._sine(unit))
-            c1 = sp.chebyshevt(abs(turns), cos)
-            s1 = sp.sign(turns) * sin * sp.chebyshevu(abs(turns) - 1, cos)
-            c, s = c * c1 - s * s1, s * c1 + c * s1
+            unit = monomial / self._part(monomial, coefficient)
+            turns, cos = int(coefficient * self._angles[monomial]), self._atom(sp.cos(unit))
+            s1 = sp.sign(turns) * self._sine(unit) * sp.chebyshevu(abs(turns) - 1, cos)
+            c, s = _multiplied((c, s), (sp.chebyshevt(abs(turns), cos), s1))
         return c, s
 
-    def _halved(self, unit: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-        """Cosine and sine in the tangent of half the angle: longer to read, but free of relations."""
-        half = self._atom(sp.sin(unit) / (1 + sp.cos(unit)))
-        return (1 - half**2) / (1 + half**2), 2 * half / (1 + half**2)
+    def _part(self, monomial: sp.Expr, coefficient: sp.Rational) -> int:
+        part = self._angles.setdefault(monomial, int(coefficient.q))
+        if part % coefficient.q:
+            raise RatfitError(f"{coefficient * monomial} has no place in the exact field of this problem")
+        return part
 
-    def prefers_half_angles(self, flat: Iterable[sp.Expr]) -> bool:
+    def _direction(self, angle: sp.Expr, scale: int) -> tuple[tuple[sp.Expr, sp.Expr], sp.Expr]:
+        """A vector in the direction of an angle, and its length, in tangents t of half the monomials' parts.
+
+        The vector is the product of powers of 1 + i*t: free of relations, though longer to read. `scale` is 2 for an
+        angle that is a multiple of the parts, 1 for one that is a multiple of their halves; the length is sure in the
+        former case.
+        """
+        vector, size = (sp.S.One, sp.S.Zero), sp.S.One
+        for monomial, coefficient in _monomials(angle):
+            if monomial is sp.pi:
+                vector = _multiplied(vector, self._rational_turn(coefficient))
+                continue
+            part = self._part(monomial, coefficient * 2 / scale)
+            t, turns = self._atom(sp.tan(monomial / part / 2)), int(2 * coefficient * part)
+            for _ in range(abs(turns)):
+                vector = _multiplied(vector, (sp.S.One, sp.sign(turns) * t))
+            size *= (1 + t**2) ** (sp.Integer(abs(turns)) / 2)
+        return (sp.expand(vector[0]), sp.expand(vector[1])), size
+
+    def prefers_half_angles(self, expressions: Iterable[sp.Expr], flat: Iterable[sp.Expr]) -> bool:
         """Whether a sine stands under a root, or several relations would make the algebra slow.
 
-        sqrt(1 - s)*sqrt(1 + s) is c, which no generator would know.
+        sqrt(1 - s)*sqrt(1 + s) is c, which no generator would know. Tangents are what half angles leave behind.
         """
         sines = set(self.relations)
-        return len(sines) > 1 or any(
-            not power.exp.is_Integer and power.base.free_symbols & sines for e in flat for power in e.atoms(sp.Pow)
+        under_root = (p.base for e in flat for p in e.atoms(sp.Pow) if not p.exp.is_Integer)
+        return (
+            len(sines) > 1 or any(e.has(sp.tan) for e in expressions) or any(b.free_symbols & sines for b in under_root)
         )
 
     def _sine(self, unit: sp.Expr) -> sp.Symbol:
@@ -279,6 +304,11 @@ class Generators:
         if flat.is_Add or flat.is_Mul or flat.is_Pow:
             return flat.func(*(self.rooted(a) for a in flat.args))
         return flat
+
+
+def _multiplied(a: tuple[sp.Expr, sp.Expr], b: tuple[sp.Expr, sp.Expr]) -> tuple[sp.Expr, sp.Expr]:
+    """The product of two complex numbers."""
+    return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
 
 
 def _quadratic(number: sp.Expr) -> tuple[sp.Rational, sp.Rational, sp.Rational]:

@@ -12,6 +12,7 @@ from ratfit._problem_text import form_table
 from ratfit.gallery import Card
 from ratfit.report.unicode import lines as formula_lines
 
+WIDTH = 110
 MARKS = {True: ("✓", "ok"), False: ("✗", "NO"), None: ("?", "??")}
 
 
@@ -58,6 +59,8 @@ def _headline(fit: Fit) -> str:
 
 def _formula_lines(fit: Fit, unicode: bool) -> list[str]:
     drawn = [f"    {line}" for line in formula_lines(fit.expression)] if unicode else []
+    if any(len(line) > WIDTH for line in drawn):
+        drawn = []  # a terminal would break the lines and leave no fraction to see
     lines = ["", *drawn, *([""] if drawn else []), f"  fit         {fit.expression}"]
     if fit.problem.form.support is not None:
         low, high = fit.problem.form.support

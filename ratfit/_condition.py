@@ -173,6 +173,6 @@ def _needed(target: Target | None, condition: AbstractCondition) -> Target:
 def _check_inside(kind: str, at: sp.Expr, domain: tuple[sp.Expr, sp.Expr], what: str) -> None:
     low, high = domain
     for values in sample_values(at.free_symbols | low.free_symbols | high.free_symbols):
-        place = at.subs(values)
-        if not (low.subs(values) <= place and place <= high.subs(values)):
+        place = at.xreplace(values)
+        if not (low.xreplace(values) <= place and place <= high.xreplace(values)):
             raise RatfitError(f"{kind} {at} lies outside the {what} [{low}, {high}]{at_values(values)}")

@@ -254,7 +254,7 @@ def numerical_rank(rows: Sequence[Sequence[sp.Expr]], digits: int = DIGITS) -> i
     ranks = []
     for values in sample_values(symbols, ("1/7", "4/7")):
         with mpmath.workdps(digits):
-            ranks.append(_rank([[numerical(e.subs(values), digits) for e in row] for row in rows], digits))
+            ranks.append(_rank([[numerical(e.xreplace(values), digits) for e in row] for row in rows], digits))
     return max(ranks, default=0)
 
 

@@ -41,7 +41,7 @@ def _share_a_root(above: sp.Poly, below: sp.Poly) -> bool:
     symbols = (above.free_symbols | below.free_symbols) - set(above.gens)
     values = sample_values(symbols, ("2/7",))[0]
     with mpmath.workdps(DIGITS):
-        roots = [polynomial_roots(p.as_expr().subs(values), above.gens[0]) for p in (above, below)]
+        roots = [polynomial_roots(p.as_expr().xreplace(values), above.gens[0]) for p in (above, below)]
         return any(abs(a - b) < mpmath.mpf("1e-12") * (1 + abs(a)) for a in roots[0] for b in roots[1])
 
 
@@ -107,6 +107,6 @@ def _without_scale(base: sp.Expr, x: sp.Symbol, inside: sp.Expr) -> tuple[sp.Exp
     plain = sp.Add(*(field.decode(s) * d for s, d in zip(short, collected, strict=True)))
     values = sample_values(plain.free_symbols | inside.free_symbols - {x}, ("3/7",))[0]
     values.pop(x, None)
-    if sp.N(plain.subs(values).subs(x, inside.subs(values))).is_negative:
+    if sp.N(plain.xreplace(values).subs(x, inside.xreplace(values))).is_negative:
         return -scale, -plain
     return scale, plain

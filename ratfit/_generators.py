@@ -30,12 +30,12 @@ DIGITS = 50
 
 def sampled(expression: sp.Expr) -> list[mpmath.mpf]:
     """The expression at three exact places inside the ranges of its parameters, to DIGITS digits."""
-    return [numerical(expression.subs(v)) for v in sample_values(expression.free_symbols, ("1/7", "4/7", "9/11"))]
+    return [numerical(expression.xreplace(v)) for v in sample_values(expression.free_symbols, ("1/7", "4/7", "9/11"))]
 
 
 def sampled_inside(expression: sp.Expr) -> list[mpmath.mpf]:
     """The expression all over the ranges of its parameters; RatfitError where it is not real."""
-    return [numerical(expression.subs(v)) for v in sample_values(expression.free_symbols, INSIDE)]
+    return [numerical(expression.xreplace(v)) for v in sample_values(expression.free_symbols, INSIDE)]
 
 
 def numerical(expression: sp.Expr, digits: int = DIGITS) -> mpmath.mpf:

@@ -25,7 +25,7 @@ def integral_parts(problem: Problem, condition: Integral) -> tuple[tuple[sp.Expr
 
 def _ordered(a: sp.Expr, b: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     """Two ends of ranges, the smaller first, for all values of the parameters tried."""
-    differences = [(a - b).subs(values) for values in sample_values((a - b).free_symbols)]
+    differences = [(a - b).xreplace(values) for values in sample_values((a - b).free_symbols)]
     if all(d <= 0 for d in differences):
         return a, b
     if all(d >= 0 for d in differences):

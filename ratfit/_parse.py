@@ -210,6 +210,7 @@ class _Reading:
     names: Mapping[str, sp.Expr]
     nodes: dict[str, _Node] = field(default_factory=dict)
     values: dict[sp.Expr, _Value] = field(default_factory=dict)
+    evaluations: dict[tuple[Any, ...], _Value] = field(default_factory=dict)
     veils: dict[sp.Expr, sp.Dummy] = field(default_factory=dict)
     meanings: dict[sp.Expr, sp.Expr] = field(default_factory=dict)
 
@@ -408,7 +409,8 @@ def _product(factors: Sequence[sp.Expr]) -> sp.Expr:
         return sp.S.Zero
     if not _are_roots_light(factors):
         raise _Refusal("too many digits under the roots of a product; round its numbers")
-    return _with_sums_shown(sp.Mul(*map(_sum_veiled, factors)))
+    parts = chain.from_iterable(map(sp.Mul.make_args, factors))
+    return _with_sums_shown(sp.Mul(*map(_sum_veiled, parts)))
 
 
 def _power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
@@ -418,9 +420,9 @@ def _power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
         _evaluated("power", [base, exponent])
     if exponent is sp.S.One:
         return base
+    _bound_power(base, exponent)
     light = not exponent.is_Rational or _are_roots_light(sp.Mul.make_args(base), exponent)
     exponent = _veiled(exponent) if light else _behind_veil(exponent)
-    _bound_power(base, exponent)
     if base is sp.E:
         return sp.exp(exponent)
     if exponent.is_Integer and base.is_Mul:
@@ -431,6 +433,10 @@ def _power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
 
 
 def _power_veiled(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
+    if base.is_Mul and len(base.args) <= SHORT:
+        factors = [_veiled(factor) for factor in base.args]
+        # A veil shows the sign of a number, and sympy would part it from the rest where it keeps them together.
+        return _veiled(base) if any(f.is_Symbol and _is_number(f) for f in factors) else sp.Mul(*factors)
     if not base.is_Pow:
         return _veiled(base)
     inner, power = base.args
@@ -538,7 +544,7 @@ def _floor(number: sp.Expr) -> int:
     low, high = _value(number)
     below = int(_contexts()[1].floor(high))
     # No integer may lie within a generous multiple of the doubt.
-    doubt = abs(low - high) * 2**20 + abs(high) * 2.0**-200
+    doubt = abs(low - high) * 2**20 + abs(high) * 2.0**-150
     if not below + doubt < high < below + 1 - doubt:
         raise _Refusal("too close to an integer to tell; write the integer")
     return below
@@ -568,22 +574,22 @@ def _operands(expr: sp.Expr, function: Any) -> Sequence[sp.Expr]:
 def _is_short(expr: sp.Expr) -> bool:
     meanings = _reading.get().meanings
     parts = list(islice(sp.preorder_traversal(expr), SHORT + 1))
-    if len(parts) > SHORT or any(part in meanings for part in parts):
+    # For the sign of a sum sympy looks for the roots of its derivative, or for a minimal polynomial.
+    if len(parts) > SHORT or any(part in meanings or part.is_Add for part in parts):
         return False
-    if _is_number(expr):
-        return all(map(_is_plain, parts))
-    # For the sign of a sum sympy looks for the roots of its derivative.
-    return _layers(expr) <= 2 and all(_is_number(part) for part in parts if part.is_Add)
+    return all(map(_is_plain, parts)) if _is_number(expr) else _layers(expr) <= 2
 
 
 def _is_plain(part: sp.Expr) -> bool:
-    """Whether a part of a number keeps the number within roots of low degree, where comparisons are quick."""
-    return not part.args or part.is_Add or part.is_Mul or (part.is_Pow and part.exp.is_Rational and part.exp.q <= 6)
+    """Whether a part of a number keeps the number where sympy's comparisons are quick."""
+    if part.is_Pow:
+        return part.exp.is_Rational and part.exp.q <= 6
+    return part.is_Mul or all(arg.is_Rational for arg in part.args)
 
 
 def _layers(expr: sp.Expr) -> int:
     below = max(map(_layers, expr.args), default=0)
-    return below if not expr.args or expr.is_Add or expr.is_Mul else below + 1
+    return below + 1 if expr.args and not expr.is_Mul else below
 
 
 def _veiled(expr: sp.Expr) -> sp.Expr:
@@ -672,7 +678,7 @@ class _Value(NamedTuple):
 def _contexts() -> tuple[MPContext, MPContext]:
     # Own contexts: mpmath's global precision belongs to the user.
     low, high = MPContext(), MPContext()
-    low.prec, high.prec = 256, 384
+    low.prec, high.prec = 192, 256
     return low, high
 
 
@@ -704,8 +710,12 @@ def _computed(number: sp.Expr) -> _Value:
 
 
 def _evaluated(operation: str, arguments: Sequence[sp.Expr]) -> _Value:
-    inputs = map(list, zip(*map(_value, arguments), strict=True))
-    return _in_range([_apply(*each, operation) for each in zip(_contexts(), inputs, strict=True)])
+    # Asked for twice: before sympy builds the number, and when its value is wanted.
+    evaluations, key = _reading.get().evaluations, (operation, *arguments)
+    if key not in evaluations:
+        inputs = map(list, zip(*map(_value, arguments), strict=True))
+        evaluations[key] = _in_range([_apply(*each, operation) for each in zip(_contexts(), inputs, strict=True)])
+    return evaluations[key]
 
 
 def _apply(context: MPContext, parts: list[Any], operation: str) -> Any:

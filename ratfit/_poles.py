@@ -39,8 +39,8 @@ def poles(
     places = sample_values(denominator.free_symbols - {x}, ("0", "1/7", "4/7", "1"))
     for values in places + _suspects(denominator, x, support):
         with mpmath.workdps(DIGITS):
-            ends = [endpoint(end.subs(values)) for end in support]
-            found += [(root, values) for root in _real_zeros(denominator.subs(values), x, ends)]
+            ends = [endpoint(end.xreplace(values)) for end in support]
+            found += [(root, values) for root in _real_zeros(denominator.xreplace(values), x, ends)]
     return found
 
 
@@ -56,7 +56,7 @@ def _suspects(denominator: sp.Expr, x: sp.Symbol, support: tuple[sp.Expr, sp.Exp
         return []
     function = sp.lambdify([x, *symbols], denominator, "math", cse=False)
     for values in sample_values(set(symbols), tuple(f"{k}/{SETTINGS}" for k in range(1, SETTINGS))):
-        low, high = (float(end.subs(values)) for end in support)
+        low, high = (float(end.xreplace(values)) for end in support)
         given = [float(values[s]) for s in symbols]
         try:
             found = [function(low + (high - low) * k / PLACES, *given) for k in range(PLACES + 1)]

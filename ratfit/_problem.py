@@ -133,7 +133,7 @@ def _check_support(problem: Problem) -> None:
         return
     (low, high), (left, right) = problem.domain, problem.form.support
     for values in sample_values(set().union(*(e.free_symbols for e in (low, high, left, right)))):
-        a, b, c, d = (e.subs(values) for e in (low, left, right, high))
+        a, b, c, d = (e.xreplace(values) for e in (low, left, right, high))
         if not (a <= b and b < c and c <= d):
             raise RatfitError(
                 f"form: the support [{left}, {right}] is empty or not inside the domain{at_values(values)}"
@@ -152,7 +152,7 @@ def _check_nodes(problem: Problem) -> None:
             raise RatfitError(f"{condition.kind}: place and equals must not hold the variable {problem.variable}")
     for a, b in combinations(points, 2):
         distance = a.at - b.at
-        signs = [sp.sign(distance.subs(values)) for values in sample_values(distance.free_symbols, INSIDE)]
+        signs = [sp.sign(distance.xreplace(values)) for values in sample_values(distance.free_symbols, INSIDE)]
         if distance.free_symbols and len(set(signs)) > 1:
             raise RatfitError(f"the places {a.at} and {b.at} meet inside the ranges of the parameters; narrow them")
 

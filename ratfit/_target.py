@@ -146,7 +146,7 @@ def check_domain(domain: tuple[Exact, Exact]) -> tuple[sp.Expr, sp.Expr]:
     if low.has(sp.I) or high.has(sp.I):
         raise RatfitError(f"domain: [{low}, {high}] must be made of real numbers")
     for values in sample_values(low.free_symbols | high.free_symbols):
-        if not low.subs(values) < high.subs(values):
+        if not low.xreplace(values) < high.xreplace(values):
             raise RatfitError(f"domain: [{low}, {high}] is empty or reversed{at_values(values)}; low must be < high")
     return low, high
 
@@ -192,7 +192,7 @@ def _numerically_equal(a: sp.Expr, b: sp.Expr) -> bool:
     if a == b:
         return True
     values = sample_values(a.free_symbols | b.free_symbols, ("2/7",))[0]
-    left, right = (sp.N(e.subs(values), 20) for e in (a, b))
+    left, right = (sp.N(e.xreplace(values), 20) for e in (a, b))
     return bool(abs(left - right) <= sp.Float("1e-15") * (1 + abs(left)))
 
 
@@ -235,6 +235,6 @@ def _check_limit(derivative: sp.Expr, value: sp.Expr, where: str) -> None:
             sp.N(derivative.xreplace({**values, _DISTANCE: step}), 30, maxn=200)
             for step in (sp.Rational(1, 10**12), sp.Rational(1, 10**6))
         )
-        claimed = sp.N(value.subs(values), 30)
+        claimed = sp.N(value.xreplace(values), 30)
         if not (near.is_number and abs(near - claimed) <= mpmath.mpf("1e-3") * (1 + abs(claimed)) + abs(far - claimed)):
             raise RatfitError(f"{where}: the limit {value} is not confirmed numerically{at_values(values)}; use equals")

@@ -83,7 +83,7 @@ def _depends(expression: sp.Expr, symbol: sp.Symbol) -> bool:
         else [{symbol: sp.S(3)}, {symbol: sp.Rational(17, 5)}]
     )
     for place in sample_values(others, ("2/7", "5/7")):
-        found = [sp.N(expression.subs(place).subs(v), 20) for v in values]
+        found = [sp.N(expression.xreplace(place).xreplace(v), 20) for v in values]
         if not abs(found[0] - found[1]) <= sp.Float("1e-12") * (1 + abs(found[0])):
             return True
     return False
@@ -115,7 +115,7 @@ def _check(
 
 def _size(demand: sp.Expr) -> mpmath.mpf:
     values = sample_values(demand.free_symbols, ("1/7",))[0]
-    return abs(multiprecise(demand.subs(values)))
+    return abs(multiprecise(demand.xreplace(values)))
 
 
 def _found_exactly(system: System, condition: AbstractCondition, candidate: _Reduced) -> sp.Expr:
@@ -190,7 +190,7 @@ def _numerical_residual(
             found = _numerical(system, condition, expression, values)
             if not mpmath.isfinite(found):
                 raise RatfitError("the condition has no finite value")
-            worst = max(worst, abs(found - multiprecise(demand.subs(values))))
+            worst = max(worst, abs(found - multiprecise(demand.xreplace(values))))
     return worst
 
 
@@ -200,16 +200,16 @@ def _numerical(
     x = system.problem.variable
     if isinstance(condition, Integral):
         (low, high), rest = integral_parts(system.problem, condition)
-        function = compiled((condition.weight * expression).subs(values), x)
+        function = compiled((condition.weight * expression).xreplace(values), x)
         places = _smooth_pieces(
-            condition.weight.subs(values), x, endpoint(low.subs(values)), endpoint(high.subs(values))
+            condition.weight.xreplace(values), x, endpoint(low.xreplace(values)), endpoint(high.xreplace(values))
         )
-        return mpmath.quad(function, places) + multiprecise(rest.subs(values))
+        return mpmath.quad(function, places) + multiprecise(rest.xreplace(values))
     assert isinstance(condition, AbstractPointCondition)
-    at = condition.at.subs(values)
-    low, high = (end.subs(values) for end in system.problem.support())
+    at = condition.at.xreplace(values)
+    low, high = (end.xreplace(values) for end in system.problem.support())
     side = 1 if at == low else -1 if at == high else 0
-    function = compiled(expression.subs(values), x)
+    function = compiled(expression.xreplace(values), x)
     try:
         return mpmath.diff(lambda distance: function(multiprecise(at) + distance), 0, condition.order, direction=side)
     except ZeroDivisionError:
@@ -253,9 +253,9 @@ def _target_infinite(system: System, values: Mapping[sp.Symbol, sp.Expr], at: mp
     target = system.problem.target
     if target is None:
         return False
-    low, high = (end.subs(values) for end in system.problem.support())
+    low, high = (end.xreplace(values) for end in system.problem.support())
     side = 1 if at < (endpoint(low) + endpoint(high)) / 2 else -1
-    function = compiled(target.expression.subs(values), target.variable)
+    function = compiled(target.expression.xreplace(values), target.variable)
     try:
         near, far = (abs(function(at + side * mpmath.mpf(step))) for step in ("1e-12", "1e-6"))
     except ZeroDivisionError:

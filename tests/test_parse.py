@@ -89,7 +89,7 @@ ACCEPTED = {
     "\tx +\r\n y ": x + y,
     # as sympy prints
     "sqrt(2)*x/sqrt(pi)": sqrt(2) * x / sqrt(pi),
-    "-(x + 1)/y": -(x + 1) / y,
+    "-(x + 1)/y": -((x + 1) / y),
     "7*x/(3*(x + y))": Rational(7, 3) * x / (x + y),
     "1/sqrt(x + 1)": 1 / sqrt(x + 1),
     "exp(-x)": exp(-x),
@@ -299,7 +299,6 @@ REFUSED = {
     "loggamma(-1/2)": "not a finite real number",
     "tan(pi/2)": "not a finite real number",
     "sqrt(-p)": "not real",
-    "log(-p)": "not real",
     # cost
     "9" * 61: "more than 60 digits",
     "1e301": "decimal exponent beyond 300",
@@ -396,7 +395,7 @@ def test_reserved_is_all_that_has_a_meaning():
 def test_nearest():
     assert nearest("smth", ["smith", "beckmann"]) == "; did you mean 'smith'?"
     assert nearest("SMITH", ["smith", "smit"]) == "; did you mean 'smith'?"
-    assert nearest("ab", ["abc", "abd"]) == "; did you mean 'abc' or 'abd'?"
+    assert nearest("betas", ["eta", "zeta", "beta"]) == "; did you mean 'beta', 'eta' or 'zeta'?"
     assert nearest("qqq", ["smith"]) == nearest("x", []) == ""
     assert nearest("x" * 100_000, ["smith"]) == ""
 
@@ -426,7 +425,7 @@ SLOW = {
     "many factors": "*".join(f"(x+{n})" for n in range(250)),
     "high degree": "+".join(f"sqrt(x*(x**{n} - 3*x**500 - 1))" for n in range(901, 960)),
     "high degree in functions": "+".join(f"sin(x**{n} - x**2 - 1)" for n in range(10, 90)),
-    "powers of complex powers": "+".join(f"(((x - 1)**{n})**x)**(x/2)" for n in range(500, 580)),
+    "powers of complex powers": "+".join(f"(((x - 1)**{n})**x)**(x/2)" for n in range(500, 570)),
     "exponents next to 1": "x**(1e-300**1e-300)**(1e-300**1e-300)*sqrt(x**(1e-300**1e-300))",
     "hidden pi": "acos(cos(16*atan(1/5) - 4*atan(1/239)))",
     "roots of high order": "12**(1/997)*(123456789**-1)**(123456789**-1)*5**0.123456789",

@@ -129,6 +129,6 @@ def _complex_power(system: System, base: sp.Expr) -> str:
     """A real power needs a base that is nowhere negative on the support; it is linear, so its ends decide."""
     for end in system.problem.support():
         place = base.subs(system.problem.variable, end)
-        if any(place.subs(values) < 0 for values in sample_values(place.free_symbols, INSIDE)):
+        if any(place.xreplace(values) < 0 for values in sample_values(place.free_symbols, INSIDE)):
             return f"complex: the base {base} is negative at {system.problem.variable} = {end}"
     return ""

@@ -17,6 +17,7 @@ from ratfit._inline import Words, problem_of_words, settings_of
 from ratfit._parse import RatfitError, nearest
 from ratfit._problem import Problem
 from ratfit.gallery import Card, card, find_problem, is_known
+from ratfit.report.progress import waiting
 
 EXPRESSION_HELP = """PROBLEM is looked up as a gallery name (`ratfit gallery`), then as a problem file
 (it ends in .toml or exists), then read as an expression that --on, --form and conditions complete."""
@@ -165,11 +166,17 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     """
     found, shown = _read(problem, degree, options)
     found = found.with_choice(settings_of(settings))
-    fit = derive_fit(found, route=options["route"], timeout=_positive(options["timeout"]))
+    fit = _derived(found, options)
     if options["unique"] and fit.status in ("family", "several"):
         fit = _refused(fit)
     _write(_rendered(fit, shown, options["format_"]), options["out"])
     return 0 if fit.candidates else 1
+
+
+def _derived(problem: Problem, options: dict[str, Any]) -> Fit:
+    seconds = _positive(options["timeout"])
+    with waiting(f"deriving {problem.name}, for at most {seconds:g} s (Ctrl-C stops)"):
+        return derive_fit(problem, route=options["route"], timeout=seconds)
 
 
 def _refused(fit: Fit) -> Fit:
@@ -264,7 +271,7 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
     values = settings_of(settings)
     names = [p.name for p in found.parameters]
     found = found.with_choice({n: v for n, v in values.items() if n not in names})
-    fit = derive_fit(found, route=options["route"], timeout=_positive(options["timeout"]))
+    fit = _derived(found, options)
     if not fit.candidates:
         print(_rendered(fit, shown, options["format_"]))
         return 1

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -14,6 +13,7 @@ from ratfit._record import Record, Row, append_row, machine, read_rows, same_mea
 from ratfit._sampling import check_protocol
 from ratfit._target import exact
 from ratfit.gallery import Card
+from ratfit.report.progress import progress
 
 COLUMNS = ("peak_mean", "peak_rms", "relative_mean", "relative_max", "absolute_max")
 """The definitions of eps that a table shows; the record holds all of them."""
@@ -46,12 +46,6 @@ def _rows(found: Sequence[Job], how: Measuring, out: str | None, resume: bool) -
             append_row(Path(out), record)
         yield record.to_json_object()
     progress("")
-
-
-def progress(text: str) -> None:
-    """One line on standard error that overwrites itself; nothing where nobody looks."""
-    if sys.stderr.isatty():
-        print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
 
 
 def table(rows: Sequence[Row]) -> str:

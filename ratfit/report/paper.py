@@ -16,7 +16,8 @@ from ratfit._parse import RatfitError
 from ratfit._record import Row, machine, write_text
 from ratfit._sampling import check_protocol
 from ratfit.gallery import Card, card
-from ratfit.report.bench import COLUMNS, gamma, progress, short
+from ratfit.report.bench import COLUMNS, gamma, short
+from ratfit.report.progress import progress
 from ratfit.report.text import agreement, equals_published
 
 EQUATIONS = ("eq12", "eq15", "eq19", "eq21")

@@ -621,10 +621,17 @@ def _sum_veiled(factor: sp.Expr) -> sp.Expr:
 
 def _with_sums_shown(expr: sp.Expr) -> sp.Expr:
     """A sum or product stays behind its veil under a power; as a factor it takes part in the product."""
-    factors = sp.Mul.make_args(expr)
-    shown = [_reading.get().meanings.get(factor, factor) for factor in factors]
-    shown = [factor if meaning.is_Function else meaning for factor, meaning in zip(factors, shown, strict=True)]
-    return expr if shown == list(factors) else sp.Mul(*shown)
+    factors = list(sp.Mul.make_args(expr))
+    shown = list(map(_shown, factors))
+    return expr if shown == factors else sp.Mul(*shown)
+
+
+def _shown(factor: sp.Expr) -> sp.Expr:
+    veil, exponent = factor.as_base_exp()
+    meaning = _reading.get().meanings.get(veil)
+    if meaning is None or meaning.is_Function or not exponent.is_Integer:
+        return factor
+    return factor if meaning.is_Add and exponent != 1 else _power(meaning, exponent)
 
 
 def _veiled_throughout(expr: sp.Expr) -> sp.Expr:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 
 import mpmath
@@ -55,8 +55,10 @@ def _suspects(denominator: sp.Expr, x: sp.Symbol, support: tuple[sp.Expr, sp.Exp
     if not symbols or any(end.is_infinite for end in support):
         return []
     function = sp.lambdify([x, *symbols], denominator, "math", cse=False)
+    moving = any(end.free_symbols for end in support)
+    fixed = (0.0, 0.0) if moving else tuple(float(end) for end in support)
     for values in sample_values(set(symbols), tuple(f"{k}/{SETTINGS}" for k in range(1, SETTINGS))):
-        low, high = (float(end.xreplace(values)) for end in support)
+        low, high = (float(end.xreplace(values)) for end in support) if moving else fixed
         given = [float(values[s]) for s in symbols]
         try:
             found = [function(low + (high - low) * k / PLACES, *given) for k in range(PLACES + 1)]
@@ -100,7 +102,7 @@ def _scanned_roots(base: sp.Expr, x: sp.Symbol, ends: Sequence[mpmath.mpf]) -> l
     if not base.has(x):
         return []
     low, high = max(ends[0], mpmath.mpf(-1000)), min(ends[1], mpmath.mpf(1000))
-    function = compiled(base, x)
+    function = function_of(base, x, {})
     points = [low + (high - low) * i / (SCAN - 1) for i in range(SCAN)]
     values = [function(p) for p in points]
     found = [p for p, v in zip(points, values, strict=True) if v == 0]
@@ -110,15 +112,25 @@ def _scanned_roots(base: sp.Expr, x: sp.Symbol, ends: Sequence[mpmath.mpf]) -> l
     return [mpmath.mpc(f) for f in found]
 
 
+def function_of(
+    expression: sp.Expr, x: sp.Symbol, values: Mapping[sp.Symbol, sp.Expr]
+) -> Callable[[mpmath.mpf], mpmath.mpf]:
+    """The expression at these values of its other symbols, as a function of x at mpmath's working precision."""
+    symbols = sorted(expression.free_symbols - {x}, key=lambda s: s.name)
+    function = _compiled(expression, (x, *symbols))
+    return lambda place: function(place, *(multiprecise(values[s]) for s in symbols))
+
+
 @lru_cache(maxsize=100)
-def compiled(expression: sp.Expr, x: sp.Symbol) -> Callable[[mpmath.mpf], mpmath.mpf]:
-    """The expression as a function of one number at mpmath's working precision."""
+def _compiled(expression: sp.Expr, symbols: tuple[sp.Symbol, ...]) -> Callable[..., mpmath.mpf]:
     numbers = {root: root.evalf(ROOT_DIGITS) for root in expression.atoms(sp.CRootOf)}
-    return sp.lambdify(x, expression.xreplace(numbers), "mpmath", cse=False)
+    return sp.lambdify(symbols, expression.xreplace(numbers), "mpmath", cse=False)
 
 
 def multiprecise(number: sp.Expr) -> mpmath.mpf:
     """A constant at the working precision of mpmath; RatfitError for one that is not real."""
+    if number.is_Rational:
+        return mpmath.mpf(int(number.p)) / int(number.q)
     value = sp.N(number, mpmath.mp.dps + 10, maxn=2 * mpmath.mp.dps + 20)
     if value.is_real is not True:
         raise RatfitError(f"{number} is not a real number")

@@ -16,7 +16,7 @@ from ratfit._fraction import presentable, reduced
 from ratfit._generators import DIGITS, sampled
 from ratfit._integral import integral_of, integral_parts
 from ratfit._parse import RatfitError
-from ratfit._poles import compiled, endpoint, multiprecise, poles, polynomial_roots
+from ratfit._poles import endpoint, function_of, multiprecise, poles, polynomial_roots
 from ratfit._series import factor_series, taylor
 from ratfit._solver import Solution
 from ratfit._system import System
@@ -200,7 +200,7 @@ def _numerical(
     x = system.problem.variable
     if isinstance(condition, Integral):
         (low, high), rest = integral_parts(system.problem, condition)
-        function = compiled((condition.weight * expression).xreplace(values), x)
+        function = function_of(condition.weight * expression, x, values)
         places = _smooth_pieces(
             condition.weight.xreplace(values), x, endpoint(low.xreplace(values)), endpoint(high.xreplace(values))
         )
@@ -209,7 +209,7 @@ def _numerical(
     at = condition.at.xreplace(values)
     low, high = (end.xreplace(values) for end in system.problem.support())
     side = 1 if at == low else -1 if at == high else 0
-    function = compiled(expression.xreplace(values), x)
+    function = function_of(expression, x, values)
     try:
         return mpmath.diff(lambda distance: function(multiprecise(at) + distance), 0, condition.order, direction=side)
     except ZeroDivisionError:
@@ -255,7 +255,7 @@ def _target_infinite(system: System, values: Mapping[sp.Symbol, sp.Expr], at: mp
         return False
     low, high = (end.xreplace(values) for end in system.problem.support())
     side = 1 if at < (endpoint(low) + endpoint(high)) / 2 else -1
-    function = compiled(target.expression.xreplace(values), target.variable)
+    function = function_of(target.expression, target.variable, values)
     try:
         near, far = (abs(function(at + side * mpmath.mpf(step))) for step in ("1e-12", "1e-6"))
     except ZeroDivisionError:

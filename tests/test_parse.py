@@ -33,11 +33,10 @@ x, y, z = sp.symbols("x y z")
 p = sp.Symbol("p", positive=True)
 r, s = sp.symbols("r s", real=True)
 NAMES = {"x": x, "y": y, "z": z, "p": p, "r": r, "s": s, "smith": sp.Symbol("smith")}
-LANES = [
-    NAMES,
-    {name: sp.Symbol(name, positive=True) for name in NAMES},
-    {name: sp.Symbol(name, real=True) for name in NAMES},
-]
+# What sympy evaluates, and how long it takes, depends on what it knows of the symbols.
+MIXED = {name: sp.Symbol(name, **{"positive": True} if name in "yps" else {"real": True}) for name in NAMES}
+POSITIVE = {name: sp.Symbol(name, positive=True) for name in NAMES}
+LANES = [NAMES, MIXED, POSITIVE]
 
 
 def parse(text, names=NAMES):
@@ -46,9 +45,10 @@ def parse(text, names=NAMES):
 
 @contextmanager
 def within_a_second():
-    started = time.perf_counter()
+    started, worked = time.perf_counter(), time.process_time()
     yield
-    assert time.perf_counter() - started < SECOND
+    # On a machine that is busy with other things, the time that this process had is what counts.
+    assert min(time.perf_counter() - started, time.process_time() - worked) < SECOND
 
 
 # What is accepted
@@ -128,6 +128,7 @@ ACCEPTED = {
     "Abs(p)": p,
     "x*sqrt(x + 1)*sqrt(x + 1)": x * (x + 1),
     "2*sqrt(x + 1)**2": 2 * x + 2,
+    "sqrt(Abs(x - 1)**pi*(x + 1))**4": sp.Abs(x - 1) ** (2 * pi) * (x + 1) ** 2,
     "x - x": sp.Integer(0),
     "(x + sin(y))/(sin(y) + x)": sp.Integer(1),
     "x*(sin(x + y) + 1)/(sin(x + y) + 1)": x,
@@ -436,12 +437,12 @@ SLOW = {
 }
 
 
-@pytest.mark.parametrize("lane", [0, 1, 2])
+@pytest.mark.parametrize("names", [NAMES, MIXED], ids=["unknown", "known"])
 @pytest.mark.parametrize("text", SLOW.values(), ids=SLOW)
-def test_nothing_takes_longer_than_a_second(text, lane):
+def test_nothing_takes_longer_than_a_second(text, names):
     assert len(text) <= MAX_LENGTH
     sp.core.cache.clear_cache()
-    ends_well(text, LANES[lane])
+    ends_well(text, names)
 
 
 def ends_well(text, names=NAMES):
@@ -549,7 +550,7 @@ CONTEXTS = [
     *["1/({})", "2*({})", "-({})", "x - ({})", "({} + y)/({} - x)", "sin({} + pi)", "acos(cos({}))", "atan2({}, x)"],
     *["({})**({})", "(({})**2)**y", "(({})**3)**(1/3)", "exp({})*exp({})", "log(x*({}))", "({})*sqrt(2)", "gamma({})"],
 ]
-ATOMS = ["x", "y", "p", "r", "2", "-1", "1/3", "0.1", "pi", "E", "sqrt(2)", "1e300", "1e-300", "10**9", "0", "(1+1e-59)"]
+ATOMS = ["x", "y", "p", "r", "2", "-1", "1/3", "0.1", "pi", "E", "sqrt(2)", "1e300", "1e-300", "10**9", "(1+1e-59)"]
 
 
 @st.composite

@@ -28,6 +28,10 @@ __version__ = "0.1.0"
 _LATER = {"measure_error": "ratfit._error", "measure_speed": "ratfit._speed", "schedule": "ratfit._schedule"}
 
 
+def __dir__() -> list[str]:
+    return sorted([*(name for name in globals() if name not in ("Any", "importlib")), *_LATER])
+
+
 def __getattr__(name: str) -> Any:
     if name in _LATER:
         return getattr(importlib.import_module(_LATER[name]), name)

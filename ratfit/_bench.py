@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
 
-from ratfit._error import measure_error
+from ratfit._error import ErrorMeasurement, measure_error
 from ratfit._fit import Fit
 from ratfit._record import Record
 from ratfit._sampling import setting
@@ -95,8 +96,20 @@ def measure(job: Job, how: Measuring, *, speed: bool = True) -> Record:
         gamma=timed.gamma if timed else None,
         gamma_low=timed.gamma_low if timed else None,
         gamma_high=timed.gamma_high if timed else None,
-        note=timed.note if timed else "eps only",
+        note="; ".join(n for n in (formula_tag(job), _warning(error), timed.note if timed else "eps only") if n),
     )
+
+
+def formula_tag(job: Job) -> str:
+    """What the row was measured of, in short: a row of another formula is not the same measurement."""
+    text = f"{job.fit.formula} | {setting(job.fit, job.parameters, job.reference).exact}"
+    return f"formula {hashlib.sha256(text.encode()).hexdigest()[:10]}"
+
+
+def _warning(error: ErrorMeasurement) -> str:
+    if error.nonfinite == error.samples:
+        return f"no sample is finite in {error.dtype}: its constants or values leave that type's range"
+    return ""
 
 
 def parameters_of(job: Job) -> dict[str, float]:

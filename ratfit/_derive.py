@@ -139,6 +139,12 @@ def _with_clash(fit: Fit, route: str) -> Fit:
     """The honest no, with a smallest set of conditions that no fraction of the form can keep together."""
     problem = fit.problem
     reasons = [f"{c.expression}: {c.reason}" for c in fit.rejected]
+    if fit.rejected and any(c.conditions and all(k.holds for k in c.conditions) for c in fit.rejected):
+        reasons.append(
+            "the conditions hold, but the fit has a pole: narrow the parameters' ranges or the domain, "
+            "raise a degree, or add a condition"
+        )
+        return Fit(problem, fit.status, fit.route, (), fit.rejected, tuple(reasons), fit.equations)
     clash, proved = _smallest_clash(problem, route)
     names = "; ".join(describe(c) for c in clash)
     what = "these conditions clash" if len(clash) < len(problem.conditions) else "all conditions together clash"

@@ -87,21 +87,27 @@ class Fit:
     @property
     def chosen(self) -> sp.Expr:
         """The expression with the recorded choices put in, on the support. Raises RatfitError when there is none."""
+        return self._found().subs(self.choice)
+
+    def _found(self) -> sp.Expr:
         if self.expression is None:
             raise RatfitError(f"{self.problem.name}: there is no fit ({self.status}): {'; '.join(self.reasons)}")
-        return self.expression.subs(self.choice)
+        return self.expression
 
     @property
     def formula(self) -> sp.Expr:
         """The approximant on the whole domain: `chosen` on the support, the form's value outside of it elsewhere."""
+        return self._on_the_domain(self.chosen)
+
+    def _on_the_domain(self, expression: sp.Expr) -> sp.Expr:
         if self.problem.form.support is None:
-            return self.chosen
+            return expression
         low, high = self.problem.form.support
         x, (left, right) = self.problem.variable, self.problem.domain
         outside = [side for side, needed in ((x < low, low != left), (x > high, high != right)) if needed]
         if not outside:
-            return self.chosen
-        return sp.Piecewise((self.problem.form.outside, sp.Or(*outside)), (self.chosen, True), evaluate=False)
+            return expression
+        return sp.Piecewise((self.problem.form.outside, sp.Or(*outside)), (expression, True), evaluate=False)
 
     @cached_property
     def cost(self):
@@ -112,24 +118,27 @@ class Fit:
         return schedule(self.chosen, self.problem.variable, ranges).cost
 
     def __call__(self, at: Any, **values: float) -> Any:
-        """The fit's value; `values` give the parameters, and free coefficients without a recorded choice, by name.
+        """The fit's value; `values` give the parameters, and free coefficients (over a recorded choice), by name.
 
-        A float gives a float, a NumPy or JAX array an array of the same shape and dtype. Raises RatfitError for a
-        missing or unknown name, TypeError never.
+        A float gives a float, a NumPy or JAX array an array of the same shape and dtype. Values of parameters are not
+        held to their ranges. Raises RatfitError for a missing or unknown name.
         """
         from ratfit._lower import lower
 
-        symbols = sorted(self.formula.free_symbols - {self.problem.variable}, key=lambda s: s.name)
-        known = [s.name for s in symbols] + [p.name for p in self.problem.parameters]
+        kept = {s: v for s, v in self.choice.items() if s.name not in values}
+        formula = self._on_the_domain(self._found().subs(kept))
+        symbols = sorted(formula.free_symbols - {self.problem.variable}, key=lambda s: s.name)
+        known = list(dict.fromkeys(s.name for s in (*self.free, *symbols, *self.problem.parameters)))
         for name in values:
             if name not in known:
-                raise RatfitError(f"{self.problem.name} has no parameter {name}{nearest(name, known)}; it has {known}")
+                has = ", ".join(known) or "none"
+                raise RatfitError(f"{self.problem.name} has no parameter {name}{nearest(name, known)}; it has: {has}")
         missing = [s.name for s in symbols if s.name not in values]
         if missing:
             raise RatfitError(f"{self.problem.name}: give {', '.join(missing)} by name, as in fit(x, {missing[0]}=...)")
         jax = sys.modules.get("jax")  # a JAX array cannot come from a program that never imported JAX
         backend = "jax" if jax is not None and isinstance(at, jax.Array) else "numpy"
-        function = lower(self.formula, [self.problem.variable, *symbols], backend)
+        function = lower(formula, [self.problem.variable, *symbols], backend)
         return function(at, *(values[s.name] for s in symbols))
 
     def __repr__(self) -> str:
@@ -168,6 +177,9 @@ class Fit:
                 }
                 for c in self.conditions
             ],
-            "rejected": [{"expression": str(c.expression), "reason": c.reason} for c in self.rejected],
+            "rejected": [
+                *({"expression": str(c.expression), "reason": c.reason} for c in self.rejected),
+                *({"expression": None, "reason": reason} for reason in self.reasons),
+            ],
             "cost": None if self.expression is None else self.cost.as_dict(),
         }

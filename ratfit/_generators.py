@@ -128,7 +128,7 @@ class Generators:
         if rewritten != e:
             return self.flatten(rewritten)
         if not e.args and e.is_real is False:
-            raise RatfitError(f"{e} is not a real number")
+            raise RatfitError("a number of the problem is not real; keep places and domain to where the target is real")
         return self._atom(e)
 
     def _root(self, e: sp.Pow) -> sp.Expr:

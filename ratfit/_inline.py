@@ -61,6 +61,8 @@ def problem_of_words(target: str, words: Words) -> Problem:
 
 def _variable(target: str, declared: set[str]) -> str:
     """The one name in the expression that nobody declared; x where there is none."""
+    if re.search(r"[^\w\s+\-*/().,]|__|\.\s*[A-Za-z_]", target):
+        return "x"  # no formula: the grammar says what is wrong with it
     names = set(re.findall(r"[A-Za-z_]\w*", target[:2000])) - RESERVED - declared
     if len(names) > 1 and "x" not in names:
         raise RatfitError(f"which of {', '.join(sorted(names))} is the variable? say so, as in --variable {min(names)}")
@@ -136,4 +138,10 @@ def _parameter(text: str) -> tuple[str, list[str]]:
 
 def settings_of(texts: Sequence[str]) -> dict[str, str]:
     """Names and values from --set options, as in n=6."""
-    return dict(_pair(text, "--set", "n=6") for text in texts)
+    found: dict[str, str] = {}
+    for text in texts:
+        name, value = _pair(text, "--set", "n=6")
+        if name in found:
+            raise RatfitError(f"--set {text}: {name} is set twice; leave one out")
+        found[name] = value
+    return found

@@ -66,6 +66,6 @@ def _primitive(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol) -> sp.Exp
         if not ratio.has(x):
             return ratio * base ** (1 - exponent) / (constant * (1 - exponent))
     raise RatfitError(
-        "form: the integral of this form is not of the kinds u'/u**p (p >= 2) and polynomial; "
-        "write the expression so, as in a*t/(b*t**2 + c)**2"
+        f"the integral of weight times form, {numerator}/({denominator}), is not a multiple of u'/u**p (p >= 2): "
+        "choose another weight, or a form as in a*t/(b*t**2 + c)**2 with weight 1, a/(b*t**2 + c)**2 with weight t"
     )

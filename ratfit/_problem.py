@@ -93,6 +93,11 @@ def _expressions(problem: Problem) -> list[tuple[str, sp.Expr]]:
 
 
 def _parameters(problem: Problem) -> dict[Parameter, tuple[sp.Expr, sp.Expr]]:
+    for symbol in problem.parameters:
+        if not isinstance(symbol, Parameter):
+            raise RatfitError(
+                f"parameters: make {symbol} by rf.parameter({str(symbol)!r}, low, high), here and in formulas"
+            )
     found = dict.fromkeys(problem.parameters)
     for _, expression in _expressions(problem):
         ordered = sorted((s for s in expression.free_symbols if isinstance(s, Parameter)), key=lambda s: s.name)

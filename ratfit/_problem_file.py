@@ -45,7 +45,11 @@ KEYS = {
 
 def read_problem(path: str | Path) -> Problem:
     """Reads a problem file. Raises RatfitError, with the remedy, for a file or a content that cannot be used."""
-    return problem_of(read_toml(Path(path)), Path(path).stem)
+    tables = read_toml(Path(path))
+    try:
+        return problem_of(tables, Path(path).stem)
+    except RatfitError as error:
+        raise RatfitError(f"{path}: {error}") from None
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -127,7 +131,9 @@ def problem_of(tables: Mapping[str, Any], name: str = "problem") -> Problem:
 
 def condition_of(table: Mapping[str, Any], names: Mapping[str, sp.Expr], what: str) -> AbstractCondition:
     """One kernel condition from its table, as in {kind = "derivative", at = "0", order = 2}."""
-    kind = str(table.get("kind"))
+    if "kind" not in table:
+        raise RatfitError(f"{what}: the key kind is missing; known kinds: {', '.join(CONDITIONS)}")
+    kind = str(table["kind"])
     if kind not in CONDITIONS:
         known = ", ".join(CONDITIONS)
         raise RatfitError(f"{what}: unknown kind {kind!r}{nearest(kind, CONDITIONS)}; known: {known}")

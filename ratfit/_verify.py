@@ -210,8 +210,13 @@ def _numerical(
     low, high = (end.xreplace(values) for end in system.problem.support())
     side = 1 if at == low else -1 if at == high else 0
     function = function_of(expression, x, values)
+    # A free power's derivative falls off like a small power of the step: the step must be far smaller than elsewhere.
+    digits = mpmath.mp.dps * (10 if system.shape.power is not None else 1)
     try:
-        return mpmath.diff(lambda distance: function(multiprecise(at) + distance), 0, condition.order, direction=side)
+        with mpmath.workdps(digits):
+            return mpmath.diff(
+                lambda distance: function(multiprecise(at) + distance), 0, condition.order, direction=side
+            )
     except ZeroDivisionError:
         raise RatfitError(f"the candidate has a pole at {x} = {condition.at}") from None
 
@@ -230,7 +235,7 @@ def _failure(checked: tuple[Checked, ...], common: sp.Expr) -> str:
             continue
         what = describe(c.condition)
         if c.holds is None:
-            return f"{what}: exact and numerical results disagree; it is not accepted undecided"
+            return f"{what}: exact and numerical results disagree, so it is undecided"
         found = f"off by {c.residual:.3g}" if c.residual is not None else "no finite value there"
         failed.append(f"{what} should be {c.demand} ({found})")
     if not failed:

@@ -32,7 +32,7 @@ def main(arguments: list[str] | None = None) -> None:
     except click.UsageError as error:
         _fail(error.format_message())
     except (KeyboardInterrupt, click.Abort):
-        print("ratfit: interrupted", file=sys.stderr)
+        print("\nratfit: interrupted; rows that bench has written are kept, --resume goes on", file=sys.stderr)
         sys.exit(130)
     except BrokenPipeError:  # the reader, `head` say, has seen enough
         sys.stderr.close()
@@ -97,14 +97,18 @@ problem_options = _together(
     click.option("--support", nargs=2, metavar="LOW HIGH", help="Where the fit lives; it is 0 elsewhere."),
     click.option("--degree", type=int, metavar="N", help="Degree of a card that takes one (pade-exp)."),
     click.option(
-        "--set", "settings", multiple=True, metavar="n=5", help="A value for a free coefficient or a parameter."
+        "--set",
+        "settings",
+        multiple=True,
+        metavar="n=5",
+        help="A value for a free coefficient; in bench, for a parameter too.",
     ),
     click.option("--route", default="auto", metavar="auto|linear|polynomial|power", help="Force a route."),
     click.option(
         "--timeout", type=float, default=60.0, show_default=True, metavar="SECONDS", help="Give up after that."
     ),
     click.option("--seed", type=int, default=0, show_default=True, help="Seed of random samples and starts."),
-    click.option("--out", type=click.Path(), metavar="FILE", help="Write the result there."),
+    click.option("--out", type=click.Path(), metavar="FILE", help="Write the result there; bench appends its rows."),
 )
 
 
@@ -143,14 +147,14 @@ def _one_word(problem: tuple[str, ...]) -> str:
             raise RatfitError(
                 f"there is no option {word.split('=')[0]}{nearest(word.split('=')[0], options)}; see --help"
             )
-    if not problem:
+    if not problem or problem == ("",):
         raise RatfitError("which problem? give a gallery name, a file or an expression, as in `ratfit derive eq19`")
     if len(problem) > 1:
         raise RatfitError(f"one problem at a time: {problem[1]!r} is one too many; put an expression in quotes")
     return problem[0]
 
 
-@cli.command(context_settings=WORDS, epilog=EXPRESSION_HELP)
+@cli.command(short_help="Derive a fit from its kernel conditions.", context_settings=WORDS, epilog=EXPRESSION_HELP)
 @problem_options
 @click.option("--unique", is_flag=True, help="Take a family with free coefficients for a no.")
 @click.option("--format", "format_", default="text", type=click.Choice(["text", "json", "latex"]), show_default=True)
@@ -197,7 +201,10 @@ def _rendered(fit: Fit, shown: Card | None, format_: str) -> str:
     if format_ == "latex":
         import sympy as sp
 
-        return "" if fit.expression is None else sp.latex(fit.expression)
+        if fit.expression is None:
+            print("ratfit: " + "; ".join(fit.reasons), file=sys.stderr)
+            return ""
+        return sp.latex(fit.formula)
     from ratfit.report.text import fit_text
 
     return fit_text(fit, shown, unicode=_speaks_unicode())
@@ -217,7 +224,7 @@ def _write(text: str, out: str | None) -> None:
     write_text(Path(out), text + "\n")
 
 
-@cli.command()
+@cli.command(short_help="List the problems of the gallery.")
 @click.argument("name", required=False)
 @click.option("--format", "format_", default="text", type=click.Choice(["text", "json", "toml"]), show_default=True)
 def gallery(name: str | None, format_: str) -> None:
@@ -250,7 +257,7 @@ measure_options = _together(
 )
 
 
-@cli.command(context_settings=WORDS, epilog=EXPRESSION_HELP)
+@cli.command(short_help="Measure the error and speed of a fit.", context_settings=WORDS, epilog=EXPRESSION_HELP)
 @problem_options
 @measure_options
 @click.option("--resume", is_flag=True, help="Go on from the rows that --out FILE holds.")
@@ -283,7 +290,7 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
     return 0
 
 
-@cli.command()
+@cli.command(short_help="The 1994 paper, derived and measured.")
 @click.option("--samples", type=int, default=1_000_000, show_default=True, metavar="N", help="Number of samples.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed of the samples.")
 @click.option(
@@ -307,7 +314,7 @@ def paper(samples: int, seed: int, out: str, format_: str) -> int:
     return run_paper(samples, seed, Path(out), format_)
 
 
-@cli.command()
+@cli.command(short_help="Write a problem file to start from.")
 @click.argument("file", type=click.Path())
 def init(file: str) -> None:
     """Write a commented problem file to start from; a file that exists is left alone.
@@ -325,15 +332,14 @@ def init(file: str) -> None:
     print(f"wrote {file}; next: ratfit check {file}", file=sys.stderr)
 
 
-@cli.command()
-@click.argument("file", type=click.Path())
+@cli.command(short_help="Say what a problem means.")
+@click.argument("file", metavar="PROBLEM", type=click.Path())
 def check(file: str) -> None:
-    """Read a problem file and say what was understood.
+    """Say what a problem file, or a gallery name, was understood to mean.
 
     \b
     ratfit check my.toml
     """
-    from ratfit._problem_file import read_problem
     from ratfit.report.text import problem_text
 
-    print(problem_text(read_problem(file)))
+    print(problem_text(find_problem(file)))

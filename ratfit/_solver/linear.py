@@ -30,13 +30,15 @@ def fractions(system: System, matrix: list[list[sp.Expr]]) -> list[Solution]:
             "in a way that is not known here; state their values with equals"
         )
     vectors = [[field.decode(e) for e in v] for v in basis]
-    if has_fixed:
-        vectors = _with_one_last(vectors)
-    if not vectors:
+    scale = len(pairs) - 1 if has_fixed else _scale_column(system, vectors)
+    frees = [_free_column(v) for v in vectors]
+    pivot = next((i for i, v in enumerate(vectors) if v[scale] != 0), None)
+    if pivot is None:
         return []
-    free = _free_names(system, vectors)
-    if free and not has_fixed:
-        vectors = [[e / v[_free_column(v)] for e in v] for v in vectors]
+    if len(vectors) > 1 or has_fixed:
+        vectors = _with_one_at(scale, pivot, vectors)
+    names = [system.shape.unknowns[c].name for i, c in enumerate(frees) if i != pivot]
+    free = [sp.Symbol(name, real=True) for name in names]
     weights = [sp.S.One, *free]
     combined = [sp.Add(*(w * v[i] for w, v in zip(weights, vectors, strict=True))) for i in range(len(pairs))]
     above = sp.Add(*(c * n for c, (n, _) in zip(combined, pairs, strict=True)))
@@ -44,23 +46,20 @@ def fractions(system: System, matrix: list[list[sp.Expr]]) -> list[Solution]:
     return [Solution(above, below, dict.fromkeys(free, (-sp.oo, sp.oo)))]
 
 
-def _with_one_last(vectors: list[list[sp.Expr]]) -> list[list[sp.Expr]]:
-    """A point with the fixed column at 1, then directions with it at 0; nothing if the fixed column must vanish."""
-    pivot = next((v for v in vectors if v[-1] != 0), None)
-    if pivot is None:
-        return []
-    point = [e / pivot[-1] for e in pivot]
-    others = [v for v in vectors if v is not pivot]
-    return [point] + [[e - v[-1] * p for e, p in zip(v, point, strict=True)] for v in others]
+def _scale_column(system: System, vectors: list[list[sp.Expr]]) -> int:
+    """The coefficient that is 1 in a family: the scale of a fraction is free.
 
-
-def _free_names(system: System, vectors: list[list[sp.Expr]]) -> list[sp.Symbol]:
-    """The coefficients that stay open: the free columns of all vectors but the first, whose weight is 1.
-
-    The scale of a fraction is free, so one weight may be 1; what it loses is the limit of infinite free ones.
+    The first coefficient of the denominator that need not vanish; what this loses is the fractions without it.
     """
-    names = (system.shape.unknowns[_free_column(v)].name for v in vectors[1:])
-    return [sp.Symbol(name, real=True) for name in names]
+    below = [i for i, u in enumerate(system.shape.unknowns) if system.shape.denominator.has(u)]
+    return next((i for i in below if any(v[i] != 0 for v in vectors)), _free_column(vectors[0]) if vectors else 0)
+
+
+def _with_one_at(column: int, pivot: int, vectors: list[list[sp.Expr]]) -> list[list[sp.Expr]]:
+    """A point with 1 in a column, then directions with 0 there, each with 1 in its own free column."""
+    point = [e / vectors[pivot][column] for e in vectors[pivot]]
+    others = [[e / v[_free_column(v)] for e in v] for i, v in enumerate(vectors) if i != pivot]
+    return [point] + [[e - v[column] * p for e, p in zip(v, point, strict=True)] for v in others]
 
 
 def _free_column(vector: list[sp.Expr]) -> int:

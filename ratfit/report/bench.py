@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from ratfit._bench import Job, Measuring, jobs, measure, parameters_of
+from ratfit._bench import Job, Measuring, formula_tag, jobs, measure, parameters_of
 from ratfit._fit import Fit
 from ratfit._record import Record, Row, append_row, machine, read_rows, same_measurement
 from ratfit._sampling import check_protocol
@@ -26,6 +26,8 @@ def run_bench(
     check_protocol(how.sampling, how.samples, how.seed, how.dtype)
     values = {name: float(exact(text, f"--set {name}")) for name, text in given.items()}
     settings = [values] if values else list(card.settings) if card else []
+    if out is not None:
+        read_rows(out)  # a file of something else is refused before the work, not after
     rows = list(_rows(jobs(fit, settings), how, out, resume))
     if format_ == "json":
         return json.dumps({"machine": machine(), "rows": rows}, indent=2, ensure_ascii=False)
@@ -37,7 +39,8 @@ def _rows(found: Sequence[Job], how: Measuring, out: str | None, resume: bool) -
     for number, job in enumerate(found, 1):
         progress(f"{number}/{len(found)} {job.name} {dict(job.parameters)}")
         asked = {"name": job.name, "parameters": parameters_of(job), **asdict(how)}
-        known = next((row for row in done if same_measurement(row, **asked)), None)
+        tag = formula_tag(job)
+        known = next((row for row in done if same_measurement(row, **asked) and row["note"].startswith(tag)), None)
         if known is not None:
             yield known
             continue
@@ -50,7 +53,7 @@ def _rows(found: Sequence[Job], how: Measuring, out: str | None, resume: bool) -
 
 def table(rows: Sequence[Row]) -> str:
     """The rows as an aligned table: eps as fractions, gamma with its interval."""
-    head = ("problem", "parameters", "dtype", *COLUMNS, "worst at", "nonfinite", "gamma", "fit/floor", "note")
+    head = ("problem", "parameters", "dtype", *COLUMNS, "worst relative at", "nonfinite", "gamma", "fit/floor", "note")
     body = [_cells(row) for row in rows]
     widths = [max(len(line[i]) for line in [head, *body]) for i in range(len(head))]
     return "\n".join(

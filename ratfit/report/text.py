@@ -44,6 +44,8 @@ def fit_text(fit: Fit, card: Card | None = None, *, unicode: bool = True) -> str
 
 
 def _headline(fit: Fit) -> str:
+    if fit.status == "rejected" and not fit.rejected:
+        return f"no answer ({fit.route} route)"
     if fit.expression is None and fit.status in ("family", "several"):
         return f"not unique ({fit.route} route)"
     words = {
@@ -79,6 +81,11 @@ def _candidate_lines(fit: Fit) -> list[str]:
 def _condition_line(checked: Checked, unicode: bool) -> str:
     mark = MARKS[checked.holds][0 if unicode else 1]
     return f"{mark} {describe(checked.condition):<28} = {checked.demand}"
+
+
+def condition_line(checked: Checked) -> str:
+    """A condition with the number it asks for, in words."""
+    return f"{describe(checked.condition)} = {checked.demand}"
 
 
 def _cost_text(fit: Fit) -> str:

@@ -14,7 +14,7 @@ ROOT = Path(ratfit.__file__).parent
 # DESIGN's order, lowest first; a module may import from its own layer and from those before it.
 LAYERS = [
     ("_deadline",),
-    ("_parse", "_grammar", "_bounds"),
+    ("_parse",),
     ("_target", "_condition", "_form"),
     ("_problem", "_problem_file", "_problem_text", "_inline", "_generators", "_field", "_integral", "_series"),
     ("_system", "_lower", "_kernel"),

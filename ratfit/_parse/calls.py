@@ -10,6 +10,7 @@ import sympy as sp
 from sympy.core.function import Application
 
 from ratfit._parse.arithmetic import power_of
+from ratfit._parse.bounds import bits_of
 from ratfit._parse.errors import Refusal
 from ratfit._parse.functions import CONSTANTS, FUNCTIONS, ROOTS, STEPS
 from ratfit._parse.limits import MAX_NAME
@@ -49,6 +50,8 @@ def call_of(name: str, arguments: list[sp.Expr]) -> sp.Expr:
         evaluated(name, arguments)
     # loggamma(n) becomes log(gamma(n)), and gamma(n) a number of any length.
     large = name == "loggamma" and numbers and value_of(arguments[0]).high > 100
+    # acos(cos(2**1000)) asks for the place of a number among the multiples of pi, and sympy gives up with a traceback.
+    large = large or (numbers and any(bits_of(r) > 64 for a in arguments for r in a.atoms(sp.Rational)))
     return _applied(name, arguments, not large and all(map(is_short, arguments)))
 
 

@@ -7,6 +7,13 @@ import threading
 from types import TracebackType
 
 
+AGAIN = 0.1
+"""Seconds after which a limit that had no effect is raised again."""
+
+FLUSH = 20
+"""Turns of an empty loop: an interpreter delivers a pending exception within the first."""
+
+
 class OutOfTime(BaseException):
     """A time limit has passed. Not an Exception: a broad handler inside a library must not swallow it."""
 
@@ -23,34 +30,34 @@ class TimeLimit:
         self.seconds = seconds
         self.passed = False
         self._lock = threading.Lock()
-        self._over = False
+        self._done = threading.Event()
         self._raised: type[OutOfTime] = type("OutOfTime", (OutOfTime,), {})  # its own, so that limits can nest
 
     def __enter__(self) -> TimeLimit:
         if self.seconds is not None:
-            self._timer = threading.Timer(self.seconds, self._stop, [threading.get_ident()])
-            self._timer.daemon = True
-            self._timer.start()
+            threading.Thread(target=self._watch, args=[threading.get_ident()], daemon=True).start()
         return self
 
-    def _stop(self, thread: int) -> None:
-        # The lock keeps a limit that passes at the very end of the block from striking whatever runs after it.
-        with self._lock:
-            if not self._over:
-                ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(self._raised))
+    def _watch(self, thread: int) -> None:
+        """Raises in the thread once the time has passed, again and again: what strikes a finaliser is lost there."""
+        pause = self.seconds
+        while not self._done.wait(pause):
+            # The lock keeps a limit that passes at the very end of the block from striking whatever runs after it.
+            with self._lock:
+                if not self._done.is_set():
+                    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(self._raised))
+            pause = AGAIN
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> bool:
-        try:
-            self._end()
-        except self._raised:  # it passed in this very moment, on the way out
-            kind = self._raised
+        while not self._done.is_set():
+            try:
+                with self._lock:
+                    self._done.set()
+                for _ in range(FLUSH):
+                    pass  # what was raised just before is delivered here
+            except self._raised:
+                kind = self._raised
         self.passed = kind is self._raised
         return self.passed
-
-    def _end(self) -> None:
-        if self.seconds is not None:
-            self._timer.cancel()
-            with self._lock:
-                self._over = True

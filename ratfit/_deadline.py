@@ -6,7 +6,6 @@ import ctypes
 import threading
 from types import TracebackType
 
-
 AGAIN = 0.1
 """Seconds after which a limit that had no effect is raised again."""
 

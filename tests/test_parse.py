@@ -433,6 +433,7 @@ SLOW = {
     "roots of roots": "((12**(1/97))**(1/89))**(1/83)",
     "large loggamma": "loggamma(10**200)",
     "large angle": "sin(10**200)*cos(10**200*pi)",
+    "many angles and back": "+".join(f"atan(tan({n}))" for n in range(2, 140)),
     "large angle and back": "acos(cos(2**1000))*acos(cos(2**64))",
     "exponents that cancel": "exp(-700)*exp(-8)*exp(700)*exp(8)",
 }

@@ -52,6 +52,8 @@ def call_of(name: str, arguments: list[sp.Expr]) -> sp.Expr:
     large = name == "loggamma" and numbers and value_of(arguments[0]).high > 100
     # acos(cos(2**1000)) asks for the place of a number among the multiples of pi, and sympy gives up with a traceback.
     large = large or (numbers and any(bits_of(r) > 64 for a in arguments for r in a.atoms(sp.Rational)))
+    # The same question takes it milliseconds for every acos(cos(2)); log(E**2) is quick.
+    large = large or (numbers and name != "log" and any(a.has(Application) for a in arguments))
     return _applied(name, arguments, not large and all(map(is_short, arguments)))
 
 

@@ -124,22 +124,22 @@ def same(a: sp.Expr, b: sp.Expr) -> bool:
     return False
 
 
-def rows(system: System) -> list[tuple[int, list[sp.Expr]]]:
-    """The linear route's equations: (number of the condition, coefficients of the columns), each row to vanish.
+def rows(system: System) -> list[list[sp.Expr]]:
+    """The linear route's equations: the coefficients of the columns, each row to vanish.
 
     At a node the rows are the Taylor coefficients of factor*P - f*Q: linear, where the quotient's are not. With a
     denominator that is constant in the variable every condition is linear as it stands.
     """
     pairs, _ = columns(system.shape)
     plain = _constant_denominator(system)
-    found: list[tuple[int, list[sp.Expr]]] = []
-    for number, (condition, demand) in enumerate(zip(system.conditions, system.demands, strict=True)):
+    found: list[list[sp.Expr]] = []
+    for condition, demand in zip(system.conditions, system.demands, strict=True):
         if isinstance(condition, Integral):
-            found.append((number, _integral_row(system, condition, demand, pairs)))
+            found.append(_integral_row(system, condition, demand, pairs))
         elif isinstance(condition, AbstractPointCondition) and plain and _is_finite_at(system, condition.at):
-            found.append((number, _plain_row(system, condition, demand, pairs)))
+            found.append(_plain_row(system, condition, demand, pairs))
         elif isinstance(condition, AbstractPointCondition):
-            found += [(number, row) for row in _hermite_rows(system, condition, demand, pairs)]
+            found += _hermite_rows(system, condition, demand, pairs)
     return found
 
 

@@ -17,7 +17,7 @@ from ratfit._fit import Fit
 from ratfit._inline import Words, problem_of_words, settings_of
 from ratfit._parse import RatfitError, nearest
 from ratfit._problem import Problem
-from ratfit.gallery import Card, card, find_problem, is_known
+from ratfit.gallery import Card, card, find_problem, is_card, is_known
 from ratfit.report.progress import waiting
 
 EXPRESSION_HELP = """PROBLEM is looked up as a gallery name (`ratfit gallery`), then as a problem file
@@ -121,7 +121,7 @@ def _read(problem: tuple[str, ...], degree: int | None, words: dict[str, Any]) -
     if is_known(text):
         if stated.given():
             raise RatfitError(f"--{stated.given()[0]} completes an expression; {text} is a whole problem, leave it out")
-        found = card_of(text)
+        found = card(text) if is_card(text) else None
         if degree is not None:
             if found is None:
                 raise RatfitError(f"--degree goes with a gallery card that takes one, not with the file {text}")
@@ -132,13 +132,6 @@ def _read(problem: tuple[str, ...], degree: int | None, words: dict[str, Any]) -
     if not stated.given() and text.replace("-", "").replace("_", "").isalnum():
         return card(text).problem, None  # a lone word that is no name: the error offers the nearest names
     return problem_of_words(text, stated), None
-
-
-def card_of(text: str) -> Card | None:
-    try:
-        return card(text)
-    except RatfitError:
-        return None
 
 
 def _one_word(problem: tuple[str, ...]) -> str:

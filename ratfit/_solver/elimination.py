@@ -59,8 +59,7 @@ def _polynomials(equations: Sequence[sp.Expr]) -> list[sp.Expr]:
     """The equations with denominators cleared and what is exactly zero left out."""
     cleared = [sp.fraction(sp.together(e))[0] for e in equations]
     field = Field(cleared)
-    kept = [e for e in cleared if not field.is_zero(e)]
-    return [field.decode(field.simplest([field.encode(e)])[0]) if e.is_number else e for e in kept]
+    return [e for e in cleared if not field.is_zero(e)]
 
 
 def _first_split(polynomials: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol]) -> tuple[int, list[sp.Expr]] | None:

@@ -23,7 +23,7 @@ MAX_MINORS = 30
 def solve_incomplete(system: System) -> list[Solution]:
     """All fractions that keep the conditions; a missing derivative that stays open is a free name of the answer."""
     whole, symbols = completed(system)
-    matrix = [row for _, row in rows(whole)]
+    matrix = rows(whole)
     width = len(columns(system.shape)[0])
     field = Field([*(e for row in matrix for e in row), *symbols])
     minors = islice(combinations(matrix, width), MAX_MINORS)

@@ -15,7 +15,7 @@ def solve_linear(system: System) -> list[Solution]:
     Raises Undecided when the exact rank and the numerical one differ: constants are then related in a way that
     the exact field does not know.
     """
-    return fractions(system, [row for _, row in rows(system)])
+    return fractions(system, rows(system))
 
 
 def fractions(system: System, matrix: list[list[sp.Expr]]) -> list[Solution]:

@@ -29,7 +29,7 @@ class Card:
     `published` is the printed formula as an expression of the problem's variable, parameters and choices; `printed`
     its text. `settings` are the parameter values to measure with, as the source's figures have them. `epsilon`
     and `gamma` are the source's figures as numbers (0.014, 2.3), None where it gives none; `operations` its count.
-    `degree` is None, or the degree of a card that takes `--degree`: a Pade table at `pade_at`.
+    `degree` is None, or the degree of a card that takes `--degree`: a Pade table at the place of its first condition.
     """
 
     problem: Problem
@@ -61,11 +61,11 @@ class Card:
             raise RatfitError(f"{self.name} takes no degree; the gallery's pade-exp does")
         if not 1 <= degree <= MAX_DEGREE:
             raise RatfitError(f"--degree must be from 1 to {MAX_DEGREE}, not {degree}")
+        if degree == self.degree:
+            return self
         at = self.problem.conditions[0].at  # type: ignore[attr-defined]
         conditions = tuple(Derivative(at, order) for order in range(2 * degree + 1))
         problem = replace(self.problem, conditions=conditions, form=Rational(degree, degree))
-        if degree == self.degree:
-            return self
         return replace(self, problem=problem, degree=degree, printed="")  # what is printed is the card's own degree
 
 
@@ -81,6 +81,7 @@ def cards() -> tuple[Card, ...]:
     return tuple(card(name) for name in names())
 
 
+@cache
 def names() -> list[str]:
     """The names of all cards."""
     return sorted(
@@ -100,8 +101,8 @@ def card(name: str) -> Card:
 
 @cache
 def _read(name: str) -> Card:
-    tables = toml_tables((files(__package__) / f"{name}.toml").read_text("utf-8"), name)
-    about: dict[str, Any] = tables.pop("card")
+    tables = dict(_tables(name))
+    about: dict[str, Any] = dict(tables.pop("card"))
     unknown = set(about) - set(_KEYS)
     if unknown:
         raise RatfitError(f"card {name}: unknown keys {sorted(unknown)}")
@@ -123,27 +124,32 @@ def _read(name: str) -> Card:
 
 
 @cache
+def _tables(name: str) -> dict[str, Any]:
+    return toml_tables((files(__package__) / f"{name}.toml").read_text("utf-8"), name)
+
+
+@cache
 def _aliases() -> dict[str, str]:
     """Alias -> name. Only the TOML is read: parsing the formulas of every card to find one would cost a cold start."""
     found: dict[str, str] = {}
     for name in names():
-        tables = toml_tables((files(__package__) / f"{name}.toml").read_text("utf-8"), name)
-        found |= dict.fromkeys(tables["card"].get("aliases", ()), name)
+        found |= dict.fromkeys(_tables(name)["card"].get("aliases", ()), name)
     return found
 
 
 def find_problem(text: str) -> Problem:
     """A problem by gallery name or alias, or else from a file. Raises RatfitError when it is neither."""
-    if text in names() or text in _aliases():
-        return card(text).problem
-    if is_file_name(text):
-        return read_problem(text)
-    return card(text).problem
+    return read_problem(text) if is_file_name(text) and not is_card(text) else card(text).problem
+
+
+def is_card(text: str) -> bool:
+    """Whether a text is the name or an alias of a card."""
+    return text in names() or text in _aliases()
 
 
 def is_known(text: str) -> bool:
     """Whether a text names a whole problem: a card, an alias or a file."""
-    return text in names() or text in _aliases() or is_file_name(text)
+    return is_card(text) or is_file_name(text)
 
 
 def is_file_name(text: str) -> bool:

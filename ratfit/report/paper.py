@@ -17,9 +17,9 @@ from ratfit._parse import RatfitError
 from ratfit._record import Row, machine, write_text
 from ratfit._sampling import check_protocol
 from ratfit.gallery import Card, card
-from ratfit.report.bench import COLUMNS, gamma, short
+from ratfit.report.bench import COLUMNS, gamma, over_floor, parameters, short
 from ratfit.report.progress import progress
-from ratfit.report.text import agreement, condition_line, equals_published
+from ratfit.report.text import agreement, aligned, condition_line, equals_published
 
 EQUATIONS = ("eq12", "eq15", "eq19", "eq21")
 DTYPES = ("float32", "float64")
@@ -121,31 +121,17 @@ def section_text(section: Section) -> str:
     lines += [f"  keeps     {condition_line(c)}" for c in fit.conditions]
     lines += [f"  cost      {_counts(fit.cost.as_dict())} a sample; the paper: {_counts(shown.operations)}"]
     lines += [f"  the paper eps {_figure(shown.epsilon)}, gamma {_figure(shown.gamma)}", ""]
-    head, *body = _table(section.rows)
-    widths = [max(len(line[i]) for line in [head, *body]) for i in range(len(head))]
-    lines += [
-        "  " + "  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in [head, *body]
-    ]
+    lines += [f"  {line}" for line in aligned(_table(section.rows))]
     return "\n".join(lines)
 
 
 def _table(rows: Sequence[Row]) -> list[tuple[str, ...]]:
     found: list[tuple[str, ...]] = [("against", "at", "dtype", *COLUMNS, "nonfinite", "gamma", "fit/floor")]
     for row in rows:
-        parameters = " ".join(f"{n}={short(v)}" for n, v in row["parameters"].items())
-        floor = short(row["fit_s"] / row["floor_s"]) if row["fit_s"] else "-"
         eps = (short(row["epsilon"][d]) for d in COLUMNS)
-        found.append(
-            (
-                row["name"].partition(":")[2] or "the target",
-                parameters,
-                row["dtype"],
-                *eps,
-                str(row["nonfinite"]),
-                gamma(row),
-                floor,
-            )
-        )
+        against = row["name"].partition(":")[2] or "the target"
+        counted = str(row["nonfinite"])
+        found.append((against, parameters(row), row["dtype"], *eps, counted, gamma(row), over_floor(row)))
     return found
 
 

@@ -120,8 +120,13 @@ def equals_published(fit: Fit, card: Card) -> bool:
 def gallery_text(shown: Sequence[Card]) -> str:
     """The list of problems, a line each."""
     rows = [(c.name, " ".join(c.aliases), c.title, f"{c.source}, {c.place}") for c in shown]
-    widths = [max(len(row[i]) for row in rows) for i in range(3)]
-    return "\n".join("  ".join([*(row[i].ljust(widths[i]) for i in range(3)), row[3]]) for row in rows)
+    return "\n".join(aligned(rows))
+
+
+def aligned(table: Sequence[Sequence[str]]) -> list[str]:
+    """The rows of a table as lines with columns below each other."""
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    return ["  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in table]
 
 
 def card_text(card: Card) -> str:

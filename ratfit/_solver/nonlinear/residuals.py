@@ -1,0 +1,54 @@
+"""Residuals: the equations that the nonlinear route brings to zero, sums of expressions and integrals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+
+@dataclass(frozen=True)
+class Moment:
+    """The integral of `integrand` over the variable from `low` to `high`.
+
+    The integrand is smooth between the ends, which are numbers or expressions of the parameters, or infinite.
+    """
+
+    integrand: sp.Expr
+    low: sp.Expr
+    high: sp.Expr
+
+    def xreplace(self, values: Mapping[sp.Symbol, sp.Expr]) -> Moment:
+        return Moment(*(e.xreplace(values) for e in (self.integrand, self.low, self.high)))
+
+
+@dataclass(frozen=True)
+class Residual:
+    """An expression of the unknowns and the parameters, plus integrals: together they must vanish."""
+
+    plain: sp.Expr
+    moments: tuple[Moment, ...] = ()
+
+    def xreplace(self, values: Mapping[sp.Symbol, sp.Expr]) -> Residual:
+        return Residual(self.plain.xreplace(values), tuple(m.xreplace(values) for m in self.moments))
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """All residuals of a problem, in its `unknowns`; every other symbol but the variable is a parameter.
+
+    `homogeneous` says that the unknowns may be multiplied by any number without a change: the last residual then puts
+    them on the unit sphere, and a root u is the same answer as -u.
+    """
+
+    variable: sp.Symbol
+    unknowns: tuple[sp.Symbol, ...]
+    parts: tuple[Residual, ...]
+    homogeneous: bool = False
+
+    def at(self, values: Mapping[sp.Symbol, sp.Expr]) -> Residuals:
+        """The residuals at exact values of the parameters."""
+        return Residuals(
+            self.variable, self.unknowns, tuple(part.xreplace(values) for part in self.parts), self.homogeneous
+        )

@@ -5,7 +5,9 @@ from typing import Any
 
 from ratfit._condition import AbstractCondition as AbstractCondition
 from ratfit._condition import Derivative as Derivative
+from ratfit._condition import Equation as Equation
 from ratfit._condition import Integral as Integral
+from ratfit._condition import Limit as Limit
 from ratfit._condition import Value as Value
 from ratfit._derive import derive as derive
 from ratfit._fit import Candidate as Candidate

@@ -22,7 +22,9 @@ class Words:
     power: str | None = None
     value: Sequence[str] = ()
     derivative: Sequence[str] = ()
+    limit: Sequence[str] = ()
     integral: Sequence[str] = ()
+    equation: Sequence[str] = ()
     variable: str | None = None
     parameter: Sequence[str] = ()
     let: Sequence[str] = ()
@@ -53,7 +55,9 @@ def problem_of_words(target: str, words: Words) -> Problem:
         "condition": [
             *(_condition("value", text) for text in words.value),
             *(_condition("derivative", text) for text in words.derivative),
+            *(_condition("limit", text) for text in words.limit),
             *(_condition("integral", text) for text in words.integral),
+            *(_condition("equation", text) for text in words.equation),
         ],
     }
     return problem_of(tables, "expression")
@@ -88,11 +92,21 @@ def _form(words: Words) -> dict[str, Any]:
     return form | {"numerator": int(match[1]), "denominator": int(match[2] or 0)}
 
 
+_SETTINGS = {
+    "value": ("equals",),
+    "derivative": ("order", "equals"),
+    "limit": ("scale", "minus", "equals"),
+    "integral": ("weight", "over", "equals"),
+    "equation": ("at", "order"),
+}
+
+
 def _condition(kind: str, text: str) -> dict[str, Any]:
-    allowed = {"value": ("equals",), "derivative": ("order", "equals"), "integral": ("weight", "over", "equals")}[kind]
-    place, settings = _settings(text, f"--{kind}", allowed)
+    place, settings = _settings(text, f"--{kind}", _SETTINGS[kind])
     table: dict[str, Any] = {"kind": kind, **settings}
-    if kind != "integral":
+    if kind == "equation":
+        table["residual"] = place
+    elif kind != "integral":
         table["at"] = place
     elif place:
         raise RatfitError(f"--integral {text}: write weight=..., over=LOW,HIGH or equals=..., separated by semicolons")
@@ -100,7 +114,7 @@ def _condition(kind: str, text: str) -> dict[str, Any]:
         table["over"] = table["over"].split(",")
     if "order" in table:
         if not re.fullmatch(r"\d{1,4}", table["order"].strip()):
-            raise RatfitError(f"--derivative {text}: the order must be a whole number >= 0, not {table['order']!r}")
+            raise RatfitError(f"--{kind} {text}: the order must be a whole number >= 0, not {table['order']!r}")
         table["order"] = int(table["order"])
     return table
 

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from ratfit._condition import AbstractCondition, AbstractPointCondition
+from ratfit._condition import AbstractCondition, AbstractPointCondition, Equation, Integral, Limit
 from ratfit._form import AbstractForm
 from ratfit._parse import RatfitError, check_name, nearest
 from ratfit._target import INSIDE, Exact, Parameter, Target, at_values, check_domain, exact, sample_values
@@ -60,7 +60,7 @@ class Problem:
         if isinstance(self.conditions, AbstractCondition) or not all(
             isinstance(c, AbstractCondition) for c in self.conditions
         ):
-            raise RatfitError("conditions: give a list of Value, Derivative and Integral")
+            raise RatfitError("conditions: give a list of Value, Derivative, Limit, Integral and Equation")
         if not isinstance(self.form, AbstractForm):
             raise RatfitError(f"form: give a Rational, Form or Power, not {self.form!r}; as in Rational(2, 1)")
         object.__setattr__(self, "conditions", tuple(self.conditions))
@@ -122,7 +122,7 @@ def _check(problem: Problem) -> None:
     _check_nodes(problem)
     for condition in problem.conditions:
         condition.check(problem.domain)
-        if problem.target is None and condition.equals is None:
+        if problem.target is None and condition.needs_target:
             raise RatfitError(f"{condition.kind} at {condition.place}: there is no target, so it must state equals")
     for reference in problem.references:
         for symbol in sorted(reference.expression.free_symbols - known - set(reference.parameters), key=str):
@@ -144,18 +144,20 @@ def _check_support(problem: Problem) -> None:
                 f"form: the support [{left}, {right}] is empty or not inside the domain{at_values(values)}"
             )
     for condition in problem.conditions:
-        if isinstance(condition, AbstractPointCondition):
+        if not isinstance(condition, Integral):
             condition.check((left, right), "support")
 
 
 def _check_nodes(problem: Problem) -> None:
     """Places must not hold the variable, and must not meet inside the ranges of the parameters."""
-    points = [c for c in problem.conditions if isinstance(c, AbstractPointCondition)]
+    points = [c for c in problem.conditions if isinstance(c, (AbstractPointCondition, Equation, Limit))]
     for condition in problem.conditions:
-        fixed = [e for e in condition.expressions() if e is not getattr(condition, "weight", None)]
-        if any(e.has(problem.variable) for e in fixed):
+        fixed = [getattr(condition, "at", None), condition.equals, *(getattr(condition, "over", None) or ())]
+        if any(e is not None and e.has(problem.variable) for e in fixed):
             raise RatfitError(f"{condition.kind}: place and equals must not hold the variable {problem.variable}")
     for a, b in combinations(points, 2):
+        if a.at.is_infinite or b.at.is_infinite:
+            continue
         distance = a.at - b.at
         signs = [sp.sign(distance.xreplace(values)) for values in sample_values(distance.free_symbols, INSIDE)]
         if distance.free_symbols and len(set(signs)) > 1:

@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from ratfit._condition import AbstractCondition, Derivative, Integral, Value
+from ratfit._condition import JET_NAMES, AbstractCondition, Derivative, Equation, Integral, Limit, Value
 from ratfit._form import AbstractForm, Form, Power, Rational
 from ratfit._parse import RatfitError, check_name, nearest, parse_expression
 from ratfit._problem import Problem, Reference
@@ -17,7 +17,7 @@ from ratfit._target import Parameter, Target, check_domain, parameter
 
 MAX_BYTES = 1 << 20
 
-CONDITIONS: Mapping[str, type[AbstractCondition]] = {c.kind: c for c in (Value, Derivative, Integral)}
+CONDITIONS: Mapping[str, type[AbstractCondition]] = {c.kind: c for c in (Value, Derivative, Limit, Integral, Equation)}
 
 KEYS = {
     "problem": (
@@ -39,7 +39,9 @@ KEYS = {
     "reference": ("name", "target", "source", "parameters"),
     "value": ("kind", "at", "equals"),
     "derivative": ("kind", "at", "order", "equals"),
+    "limit": ("kind", "at", "scale", "minus", "equals"),
     "integral": ("kind", "weight", "over", "equals"),
+    "equation": ("kind", "residual", "at", "order"),
 }
 
 
@@ -140,16 +142,27 @@ def condition_of(table: Mapping[str, Any], names: Mapping[str, sp.Expr], what: s
     _check_keys(table, kind, what)
     what = f"{what} ({kind})"
     arguments: dict[str, Any] = {}
-    for key in ("at", "equals", "weight"):
+    for key in ("at", "equals", "weight", "scale", "minus"):
         if key in table:
             arguments[key] = _expression(table[key], names, f"{what}, {key}")
     if "over" in table:
         arguments["over"] = _pair(table["over"], f"{what}, over", names)
     if "order" in table:
         arguments["order"] = table["order"]
+    if kind == "equation":
+        arguments["residual"] = _residual(table, names, what)
     if kind != "integral" and "at" not in arguments:
         raise RatfitError(f'{what}: the key "at" is missing, the place of the condition')
     return CONDITIONS[kind](**arguments)
+
+
+def _residual(table: Mapping[str, Any], names: Mapping[str, sp.Expr], what: str) -> sp.Expr:
+    """The residual of a differential equation, written in y, y', y'', ... and the names of the problem."""
+    if "residual" not in table:
+        raise RatfitError(f'{what}: the key "residual" is missing, as in residual = "y\'\' + y"')
+    if "y" in names:
+        raise RatfitError(f"{what}: y is the unknown function in a residual; rename what is called y in the problem")
+    return _expression(table["residual"], {**names, **JET_NAMES}, f"{what}, residual")
 
 
 def _form_of(table: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> AbstractForm:

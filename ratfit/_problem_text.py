@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivative, Integral
+from ratfit._condition import AbstractCondition, Derivative, Equation, Integral, Limit
 from ratfit._form import AbstractForm, Form, Power, Rational
 from ratfit._problem import Problem, Reference
 
@@ -59,9 +59,14 @@ def _condition_table(condition: AbstractCondition) -> dict[str, Any]:
     if isinstance(condition, Integral):
         table["weight"] = str(condition.weight)
         table |= {"over": [str(end) for end in condition.over]} if condition.over else {}
-    elif isinstance(condition, AbstractPointCondition):
+    else:
         table["at"] = condition.place
-    if isinstance(condition, Derivative):
+    if isinstance(condition, Limit):
+        table |= {"scale": str(condition.scale)} if condition.scale != 1 else {}
+        table |= {"minus": str(condition.minus)} if condition.minus != 0 else {}
+    if isinstance(condition, Equation):
+        table["residual"] = str(condition.residual)
+    if isinstance(condition, (Derivative, Equation)):
         table["order"] = condition.order
     return table | ({"equals": str(condition.equals)} if condition.equals is not None else {})
 

@@ -124,6 +124,25 @@ class Target:
             )
         return found[0]
 
+    def limit(self, at: sp.Expr, scale: sp.Expr, minus: sp.Expr) -> sp.Expr:
+        """The limit of (target - minus)*scale at a place of the domain, or at oo or -oo, inside it or beyond.
+
+        Raises RatfitError where it is infinite, does not exist, or is not found.
+        """
+        function, x = (self.expression - minus) * scale, self.variable
+        where = f"the limit of {'the target' if function == self.expression else function} at {x} = {at}"
+        if at.is_infinite:
+            far = function.xreplace({x: (1 if at is sp.oo else -1) / _DISTANCE})
+            return _confirmed_limit(far, where)
+        low, high = self.domain
+        sides = [-1] if at == high else [1] if at == low else [1, -1]
+        found = [_confirmed_limit(_moved(function, x, at, side, 0), where) for side in sides]
+        if len(found) == 2 and not _numerically_equal(*found):
+            raise RatfitError(
+                f"{where} is {found[1]} from the left and {found[0]} from the right; state it with equals"
+            )
+        return found[0]
+
     def integral(self, weight: sp.Expr, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
         """The integral of weight times the target; raises RatfitError when no closed form is found in time."""
         advice = "; state its value with equals"
@@ -218,13 +237,20 @@ def _one_sided(expression: sp.Expr, variable: sp.Symbol, at: sp.Expr, side: int,
     if value is not None:
         return value
     where = f"the target's derivative of order {order}" if order else "the target's value"
+    return _confirmed_limit(derivative, f"{where} at {variable} = {at}")
+
+
+def _confirmed_limit(function: sp.Expr, where: str) -> sp.Expr:
+    """The limit of a function of the distance as that vanishes, confirmed by numbers."""
     try:
-        value = sp.limit(derivative, _DISTANCE, 0, "+")
+        value = sp.limit(function, _DISTANCE, 0, "+")
     except (NotImplementedError, ValueError, RecursionError):
-        raise RatfitError(f"{where} at {variable} = {at} is not found; state it with equals") from None
+        raise RatfitError(f"{where} is not found; state it with equals") from None
+    if value.has(sp.AccumBounds):
+        raise RatfitError(f"{where} does not exist; state another condition there")
     if value.is_infinite or not _is_finite(value) or value.has(sp.Limit):
-        raise RatfitError(f"{where} at {variable} = {at} is not finite; state another condition there")
-    _check_limit(derivative, value, f"{where} at {variable} = {at}")
+        raise RatfitError(f"{where} is not finite; state another condition there")
+    _check_limit(function, value, where)
     return value
 
 

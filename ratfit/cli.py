@@ -87,8 +87,12 @@ problem_options = _together(
     click.option("--power", metavar="BASE", help="The form A + B*BASE**n; ';exponent=p' names the exponent."),
     click.option("--value", multiple=True, metavar="AT", help="Keep the value there; ';equals=...' states it."),
     click.option("--derivative", multiple=True, metavar="AT", help="Keep the slope there; ';order=2;equals=1/4'."),
+    click.option("--limit", multiple=True, metavar="AT", help="Keep the limit there: 'oo;equals=1;scale=x;minus=x/2'."),
     click.option(
         "--integral", multiple=True, metavar="WEIGHT", help="Keep an integral: 'weight=2*t;over=0,1;equals=1'."
+    ),
+    click.option(
+        "--equation", multiple=True, metavar="RESIDUAL", help="A differential equation: \"y'' + y;at=0;order=2\"."
     ),
     click.option("--variable", metavar="NAME", help="The variable, where the expression leaves it open."),
     click.option("--parameter", multiple=True, metavar="m=LOW:HIGH", help="A symbol that stays in the answer."),
@@ -105,7 +109,7 @@ problem_options = _together(
         metavar="n=5",
         help="A value for a free coefficient; in bench, for a parameter too.",
     ),
-    click.option("--route", default="auto", metavar="auto|linear|polynomial|power", help="Force a route."),
+    click.option("--route", default="auto", metavar="auto|linear|polynomial|power|nonlinear", help="Force a route."),
     click.option(
         "--timeout", type=float, default=60.0, show_default=True, metavar="SECONDS", help="Give up after that."
     ),

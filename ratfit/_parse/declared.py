@@ -38,9 +38,18 @@ def _declared(name: str) -> sp.Expr:
         raise Refusal(f"a function needs its argument in parentheses; write {name}(...)")
     if keyword.iskeyword(name):
         raise Refusal(NO_PYTHON)
+    if name not in names and name.endswith("'"):
+        raise Refusal(_prime_remedy(names))
     if name not in names:
         raise Refusal(f"this name is not declared{nearest(name, [*names, *FUNCTIONS, *CONSTANTS]) or _listed(names)}")
     return names[name]
+
+
+def _prime_remedy(names: Collection[str]) -> str:
+    primed = [quote(name) for name in names if name.endswith("'")]
+    if not primed:
+        return "write names without quotes; only the residual of an equation holds derivatives, y' and y''"
+    return f"this derivative is not known here; the unknown function is y, its derivatives {', '.join(primed)}"
 
 
 def _listed(names: Collection[str]) -> str:

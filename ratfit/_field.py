@@ -178,15 +178,13 @@ class Field:
         traces = [sum((m[j][j] for j in range(i + 1, n)), self.zero) for i in range(n)]
         return [[self.zero] * i + [-traces[i], *m[i][i + 1 :]] for i in range(n)]
 
+    def product(self, a: Sequence[Element], b: Sequence[Element]) -> Element:
+        """The scalar product of two vectors."""
+        return sum((self.multiply(x, y) for x, y in zip(a, b, strict=True) if x and y), self.zero)
+
     def _product(self, a: Sequence[Sequence[Element]], b: Sequence[Sequence[Element]]) -> list[list[Element]]:
         columns = list(zip(*b, strict=True))
-        return [
-            [
-                sum((self.multiply(x, y) for x, y in zip(row, column, strict=True) if x and y), self.zero)
-                for column in columns
-            ]
-            for row in a
-        ]
+        return [[self.product(row, column) for column in columns] for row in a]
 
     def simplest(self, vector: Sequence[Element]) -> list[Element]:
         """The multiple of a vector that is shortest to write: no denominators, no common factor."""

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import sympy as sp
 
-from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivative, Integral
-from ratfit._field import is_zero
+from ratfit._condition import JET, AbstractCondition, AbstractPointCondition, Equation, Integral, Limit
 from ratfit._form import Rational, Shape
-from ratfit._generators import sampled
-from ratfit._integral import integral_of, integral_parts, integrated
+from ratfit._integral import integral_of, integral_parts
+from ratfit._jets import Completion, completion
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
-from ratfit._series import factor_series, taylor
 
-TINY = 1e-40
-"""Places closer than this at 50 digits are compared exactly."""
+Demanded = tuple[AbstractCondition, sp.Expr]
 
 
 @dataclass(frozen=True)
@@ -26,13 +23,18 @@ class System:
 
     `demands` holds the number that each of the `conditions` asks for: those of the problem, and in a completed system
     the derivatives that were missing below them. `fraction` says that the form is a quotient of sums of unknowns times
-    functions; `linear` that moreover the null space of `rows(system)` is all there is to find.
+    functions.
     """
 
     problem: Problem
     shape: Shape
     conditions: tuple[AbstractCondition, ...]
     demands: tuple[sp.Expr, ...]
+
+    @property
+    def pairs(self) -> list[Demanded]:
+        """The conditions with their demands."""
+        return list(zip(self.conditions, self.demands, strict=True))
 
     @cached_property
     def fraction(self) -> bool:
@@ -43,17 +45,32 @@ class System:
         return not any(part.has(*shape.unknowns) or part.has(sp.nan, sp.zoo) for part in parts)
 
     @cached_property
-    def linear(self) -> bool:
-        if not self.fraction:
-            return False
-        if not _constant_denominator(self):
-            return not self.integrals and not missing(self)
-        return all(_is_finite_at(self, lacking.at) for lacking in missing(self))
+    def plain(self) -> bool:
+        """Whether the denominator is constant in the variable: then every condition is linear as it stands."""
+        return not any(below.has(self.problem.variable) for _, below in columns(self.shape)[0])
+
+    @cached_property
+    def fixed_denominator(self) -> bool:
+        """Whether no unknown stands in a denominator that holds the variable: then integrals are linear."""
+        pairs, has_fixed = columns(self.shape)
+        return self.plain or (has_fixed and all(below == 0 for _, below in pairs[:-1]))
 
     @property
     def integrals(self) -> bool:
-        """Whether a condition is an integral."""
-        return any(isinstance(condition, Integral) for condition in self.conditions)
+        """Whether a condition is an integral that is not linear in the unknowns."""
+        return not self.fixed_denominator and any(isinstance(c, Integral) for c in self.conditions)
+
+    @cached_property
+    def completion(self) -> Completion:
+        """The derivatives that the rows need beside those stated: given by equations, or left open as symbols."""
+        problem = self.problem
+        points = [(c, d) for c, d in self.pairs if isinstance(c, AbstractPointCondition)]
+        odes = [c for c in self.conditions if isinstance(c, Equation) and not is_plain_equation(self, c)]
+        taken = {s.name for s in (problem.variable, *problem.parameters, *self.shape.unknowns)}
+        return completion(problem.variable, points, odes, taken, self._needs_no_statement)
+
+    def _needs_no_statement(self, at: sp.Expr, order: int) -> bool:
+        return (self.plain and is_finite_at(self, at)) or vanishes_by_parity(self.problem, at, order)
 
 
 def equations(problem: Problem) -> System:
@@ -64,26 +81,15 @@ def equations(problem: Problem) -> System:
     return System(problem, shape, problem.conditions, demands)
 
 
-def missing(system: System) -> list[Derivative]:
-    """The derivatives below those asked for at a node, which nothing states: with them the equations are linear."""
-    points = [c for c in system.conditions if isinstance(c, AbstractPointCondition)]
-    found: list[Derivative] = []
-    for condition in points:
-        known = {c.order for c in (*points, *found) if same(c.at, condition.at)}
-        for order in range(condition.order):
-            if order not in known and not _vanishes_by_parity(system.problem, condition.at, order):
-                found.append(Derivative(condition.at, order))
-    return found
+def completed(system: System) -> System:
+    """The system with derivatives in place of differential equations, and a symbol for each missing derivative."""
+    kept = [(c, d) for c, d in system.pairs if not isinstance(c, Equation) or is_plain_equation(system, c)]
+    return of_pairs(system, [*kept, *system.completion.facts])
 
 
-def completed(system: System) -> tuple[System, list[sp.Symbol]]:
-    """The system with a symbol in place of each missing derivative, and these symbols."""
-    lacking = missing(system)
-    names = {s.name for s in (system.problem.variable, *system.problem.parameters, *system.shape.unknowns)}
-    letter = next(letter for letter in ("s", "ss", "sss", "slope") if not any(n.startswith(letter) for n in names))
-    symbols = [sp.Symbol(f"{letter}{i}", real=True) for i in range(len(lacking))]
-    conditions, demands = (*system.conditions, *lacking), (*system.demands, *symbols)
-    return System(system.problem, system.shape, conditions, demands), symbols
+def of_pairs(system: System, pairs: list[Demanded]) -> System:
+    """The system with other conditions."""
+    return replace(system, conditions=tuple(c for c, _ in pairs), demands=tuple(d for _, d in pairs))
 
 
 def columns(shape: Shape) -> tuple[list[tuple[sp.Expr, sp.Expr]], bool]:
@@ -98,98 +104,24 @@ def columns(shape: Shape) -> tuple[list[tuple[sp.Expr, sp.Expr]], bool]:
     return pairs + ([fixed] if has_fixed else []), has_fixed
 
 
-def _is_finite_at(system: System, at: sp.Expr) -> bool:
+def is_finite_at(system: System, at: sp.Expr) -> bool:
     """Whether the form's factor is finite at a place: only there is a condition on a polynomial linear as it stands."""
     return not system.shape.factor.xreplace({system.problem.variable: at}).has(sp.zoo, sp.nan, sp.oo)
 
 
-def _constant_denominator(system: System) -> bool:
-    return not any(below.has(system.problem.variable) for _, below in columns(system.shape)[0])
+def is_plain_equation(system: System, equation: Equation) -> bool:
+    """Whether a differential equation is linear in the unknowns as it stands: itself linear, of a polynomial."""
+    slopes = [sp.diff(equation.residual, y) for y in JET[: equation.height + 1]]
+    linear = system.fraction and not any(slope.has(*JET) for slope in slopes)
+    return linear and system.plain and is_finite_at(system, equation.at)
 
 
-def _vanishes_by_parity(problem: Problem, at: sp.Expr, order: int) -> bool:
+def vanishes_by_parity(problem: Problem, at: sp.Expr, order: int) -> bool:
+    """Whether the form's parity makes a derivative zero."""
     form = problem.form
     if not isinstance(form, Rational) or form.parity is None or form.of is not None or form.factor != 1 or at != 0:
         return False
     return order % 2 == (form.parity == "even") and 0 in form.exponents()[1]
-
-
-@lru_cache(maxsize=1000)
-def same(a: sp.Expr, b: sp.Expr) -> bool:
-    """Whether two places are the same, however they are written."""
-    if a == b:
-        return True
-    if not (a.is_Rational and b.is_Rational) and all(abs(v) < TINY for v in sampled(a - b)):
-        return is_zero(a - b) is True
-    return False
-
-
-def rows(system: System) -> list[list[sp.Expr]]:
-    """The linear route's equations: the coefficients of the columns, each row to vanish.
-
-    At a node the rows are the Taylor coefficients of factor*P - f*Q: linear, where the quotient's are not. With a
-    denominator that is constant in the variable every condition is linear as it stands.
-    """
-    pairs, _ = columns(system.shape)
-    plain = _constant_denominator(system)
-    found: list[list[sp.Expr]] = []
-    for condition, demand in zip(system.conditions, system.demands, strict=True):
-        if isinstance(condition, Integral):
-            found.append(_integral_row(system, condition, demand, pairs))
-        elif isinstance(condition, AbstractPointCondition) and plain and _is_finite_at(system, condition.at):
-            found.append(_plain_row(system, condition, demand, pairs))
-        elif isinstance(condition, AbstractPointCondition):
-            found += _hermite_rows(system, condition, demand, pairs)
-    return found
-
-
-def _plain_row(
-    system: System, condition: AbstractPointCondition, demand: sp.Expr, pairs: list[tuple[sp.Expr, sp.Expr]]
-) -> list[sp.Expr]:
-    x, factor = system.problem.variable, system.shape.factor
-    weight = sp.factorial(condition.order)
-    return [
-        weight * taylor(factor * above, x, condition.at, condition.order)[-1] - demand * below for above, below in pairs
-    ]
-
-
-def _integral_row(
-    system: System, condition: Integral, demand: sp.Expr, pairs: list[tuple[sp.Expr, sp.Expr]]
-) -> list[sp.Expr]:
-    problem = system.problem
-    inside, rest = integral_parts(problem, condition)
-    return [
-        integrated(condition.weight * system.shape.factor * above, problem.variable, inside) - (demand - rest) * below
-        for above, below in pairs
-    ]
-
-
-def _hermite_rows(
-    system: System, condition: AbstractPointCondition, demand: sp.Expr, pairs: list[tuple[sp.Expr, sp.Expr]]
-) -> list[list[sp.Expr]]:
-    x, at, order = system.problem.variable, condition.at, condition.order
-    data = [_known_derivative(system, condition, k) / sp.factorial(k) for k in range(order)]
-    data.append(demand / sp.factorial(order))
-    pole, factor = factor_series(system.shape.factor, x, at, order)
-    found = []
-    # A pole of the factor must be met by zeros of P: the value brings the rows below the pole's order along.
-    for k in range(order + pole + 1) if order == 0 else [order + pole]:
-        row = []
-        for above, below in pairs:
-            p, q = taylor(above, x, at, k), taylor(below, x, at, k)
-            numerator = sum((factor[j] * p[k - j] for j in range(min(k, len(factor) - 1) + 1)), sp.S.Zero)
-            denominator = sum((data[j] * q[k - pole - j] for j in range(min(k - pole, order) + 1)), sp.S.Zero)
-            row.append(sp.expand(numerator - denominator))
-        found.append(row)
-    return found
-
-
-def _known_derivative(system: System, condition: AbstractPointCondition, order: int) -> sp.Expr:
-    """The derivative of a lower order that another condition at the same node asks for, or parity's zero."""
-    for other, demand in zip(system.conditions, system.demands, strict=True):
-        if isinstance(other, AbstractPointCondition) and other.order == order and same(other.at, condition.at):
-            return demand
-    return sp.S.Zero
 
 
 def polynomial_equations(system: System) -> list[sp.Expr]:
@@ -198,19 +130,33 @@ def polynomial_equations(system: System) -> list[sp.Expr]:
     Clearing the denominators adds roots at which numerator and denominator vanish together: verifying removes them.
     """
     return [
-        sp.fraction(sp.cancel(_residual(system, condition, demand)))[0]
-        for condition, demand in zip(system.conditions, system.demands, strict=True)
+        sp.fraction(sp.cancel(residual))[0] for c, demand in system.pairs for residual in residuals(system, c, demand)
     ]
 
 
-def _residual(system: System, condition: AbstractCondition, demand: sp.Expr) -> sp.Expr:
+def residuals(system: System, condition: AbstractCondition, demand: sp.Expr) -> list[sp.Expr]:
+    """What a condition wants to vanish, as expressions of the unknowns: one, or one for each order of an equation.
+
+    Raises RatfitError for a limit, and for an integral that has no closed form here.
+    """
     x = system.problem.variable
     if isinstance(condition, Integral):
         inside, rest = integral_parts(system.problem, condition)
         numerator = condition.weight * system.shape.factor * system.shape.numerator
-        return integral_of(numerator, system.shape.denominator, x, inside) + rest - demand
+        return [integral_of(numerator, system.shape.denominator, x, inside) + rest - demand]
+    if isinstance(condition, Limit):
+        raise RatfitError(f"the limit at {condition.place} is not polynomial in the unknowns of this form")
+    if isinstance(condition, Equation):
+        jet = [_derivative(system, condition.at, k) for k in range(condition.height + condition.order + 1)]
+        put_in = dict(zip(JET, jet, strict=False))
+        return [residual.subs(x, condition.at).xreplace(put_in) for residual in condition.residuals(x)]
     assert isinstance(condition, AbstractPointCondition)
-    value = sp.diff(system.shape.expression, x, condition.order).subs(x, condition.at)
+    return [_derivative(system, condition.at, condition.order) - demand]
+
+
+def _derivative(system: System, at: sp.Expr, order: int) -> sp.Expr:
+    x = system.problem.variable
+    value = sp.diff(system.shape.expression, x, order).subs(x, at)
     if value.has(sp.nan, sp.zoo):
-        raise RatfitError(f"the form has no value at {x} = {condition.place}; move the condition or change the factor")
-    return value - demand
+        raise RatfitError(f"the form has no value at {x} = {at}; move the condition or change the factor")
+    return value

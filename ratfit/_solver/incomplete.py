@@ -11,10 +11,11 @@ from itertools import combinations, islice
 import sympy as sp
 
 from ratfit._field import Field
+from ratfit._rows import rows
 from ratfit._solver.elimination import is_complex, solutions
-from ratfit._solver.linear import fractions
+from ratfit._solver.linear import fractions, kernel
 from ratfit._solver.solution import Solution
-from ratfit._system import System, columns, completed, rows
+from ratfit._system import System, columns, completed
 
 MAX_MINORS = 30
 """Minors beyond that many add nothing new in practice; verification would reject what they had excluded."""
@@ -22,12 +23,13 @@ MAX_MINORS = 30
 
 def solve_incomplete(system: System) -> list[Solution]:
     """All fractions that keep the conditions; a missing derivative that stays open is a free name of the answer."""
-    whole, symbols = completed(system)
+    whole, symbols = completed(system), system.completion.symbols
     matrix = rows(whole)
     width = len(columns(system.shape)[0])
     field = Field([*(e for row in matrix for e in row), *symbols])
     minors = islice(combinations(matrix, width), MAX_MINORS)
     equations = [field.decode(field.determinant([[field.encode(e) for e in row] for row in minor])) for minor in minors]
+    equations += system.completion.leftover
     found = []
     for assignment in solutions(equations, symbols):
         if bad := [s for s, value in assignment.items() if is_complex(value)]:
@@ -35,7 +37,7 @@ def solve_incomplete(system: System) -> list[Solution]:
             found.append(Solution(system.shape.numerator, system.shape.denominator, nature=nature))
             continue
         open_ = {s: (-sp.oo, sp.oo) for s in symbols if s not in assignment}
-        for solution in fractions(system, [[e.subs(assignment) for e in row] for row in matrix]):
+        for solution in fractions(system, kernel([[e.subs(assignment) for e in row] for row in matrix], width)):
             found.append(
                 Solution(solution.numerator, solution.denominator, {**solution.free, **open_}, solution.nature)
             )

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ratfit._field import Field, ranks_agree
+from ratfit._condition import Limit
+from ratfit._field import Field, is_zero, ranks_agree
+from ratfit._rows import limit_rows, rows
 from ratfit._solver.solution import Solution, Undecided
-from ratfit._system import System, columns, rows
+from ratfit._system import System, columns, completed
 
 
 def solve_linear(system: System) -> list[Solution]:
@@ -15,21 +17,47 @@ def solve_linear(system: System) -> list[Solution]:
     Raises Undecided when the exact rank and the numerical one differ: constants are then related in a way that
     the exact field does not know.
     """
-    return fractions(system, rows(system))
+    if any(is_zero(e) is False for e in system.completion.leftover):
+        return []
+    return fractions(system, null_space(completed(system)))
 
 
-def fractions(system: System, matrix: list[list[sp.Expr]]) -> list[Solution]:
-    """The fractions whose coefficients a matrix sends to zero, its symbols taken for independent."""
-    pairs, has_fixed = columns(system.shape)
+def null_space(system: System) -> list[list[sp.Expr]]:
+    """A basis of the coefficients that satisfy a completed system's linear equations.
+
+    Where all of them make Q vanish to a higher order at the place of a limit than its rows were made for, the rows
+    of the next order are added.
+    """
+    limits = [(c, d) for c, d in system.pairs if isinstance(c, Limit)]
+    raised = dict.fromkeys((limit for limit, _ in limits), 0)
+    while True:
+        vectors = kernel(rows(system, raised), len(columns(system.shape)[0]))
+        stuck = [c for c, d in limits if vectors and _vanishes(limit_rows(system, c, d, raised[c])[1], vectors)]
+        if not stuck or max(raised.values()) > 2 * len(system.shape.unknowns):
+            return vectors
+        raised |= {limit: raised[limit] + 1 for limit in stuck}
+
+
+def kernel(matrix: list[list[sp.Expr]], width: int) -> list[list[sp.Expr]]:
+    """A basis of the vectors that every row sends to zero, its symbols taken for independent."""
     field = Field([e for row in matrix for e in row])
-    basis = field.null_space([[field.encode(e) for e in row] for row in matrix], len(pairs))
-    rank = len(pairs) - len(basis)
+    basis = field.null_space([[field.encode(e) for e in row] for row in matrix], width)
+    rank = width - len(basis)
     if not ranks_agree(matrix, rank):
         raise Undecided(
             f"the equations have rank {rank} exactly but not numerically: some constants of the conditions are related "
             "in a way that is not known here; state their values with equals"
         )
-    vectors = [[field.decode(e) for e in v] for v in basis]
+    return [[field.decode(e) for e in v] for v in basis]
+
+
+def _vanishes(functional: list[sp.Expr], vectors: list[list[sp.Expr]]) -> bool:
+    return all(is_zero(sp.Add(*(f * e for f, e in zip(functional, v, strict=True)))) is True for v in vectors)
+
+
+def fractions(system: System, vectors: list[list[sp.Expr]]) -> list[Solution]:
+    """The fractions with these coefficients: one, or a family with a free name for each vector but one."""
+    pairs, has_fixed = columns(system.shape)
     scale = len(pairs) - 1 if has_fixed else _scale_column(system, vectors)
     frees = [_free_column(v) for v in vectors]
     pivot = next((i for i, v in enumerate(vectors) if v[scale] != 0), None)

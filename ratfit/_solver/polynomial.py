@@ -20,7 +20,7 @@ def solve_polynomial(system: System) -> list[Solution]:
     the patches cover every fraction once. Incomplete derivative data of a fraction go another way, with fewer
     unknowns. Raises Undecided for a root that has no closed form.
     """
-    if system.fraction and not system.linear and not system.integrals:
+    if system.fraction and not system.integrals and system.completion.symbols:
         return solve_incomplete(system)
     shape = system.shape
     equations = polynomial_equations(system)

@@ -9,9 +9,10 @@ import sympy as sp
 from ratfit._condition import AbstractPointCondition
 from ratfit._field import is_zero
 from ratfit._generators import sampled
+from ratfit._jets import same
 from ratfit._parse import RatfitError
 from ratfit._solver.solution import Solution, Undecided
-from ratfit._system import System, same
+from ratfit._system import System
 from ratfit._target import INSIDE, Parameter, sample_values
 
 Demand = tuple[AbstractPointCondition, sp.Expr]

@@ -1,0 +1,183 @@
+"""Rows: the linear route's equations, each the coefficients of the unknowns of a condition that is to vanish."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ratfit._condition import JET, AbstractPointCondition, Equation, Integral, Limit
+from ratfit._field import Field
+from ratfit._integral import closed_integral, integral_parts, integrated
+from ratfit._jets import same
+from ratfit._series import Laurent, factor_series, laurent, local_coordinate, taylor
+from ratfit._system import System, columns, is_finite_at
+
+Row = list[sp.Expr]
+
+NOTHING: Mapping[Limit, int] = {}
+
+
+def rows(system: System, raised: Mapping[Limit, int] = NOTHING) -> list[Row]:
+    """The linear equations of a completed system: the coefficients of the columns, each row to vanish.
+
+    At a node the rows are the Taylor coefficients of factor*P - f*Q: linear, where the quotient's are not. With a
+    denominator that is constant in the variable every condition is linear as it stands. `raised` says for a limit how
+    many orders more the denominator is known to vanish there. Raises RatfitError for a condition that is not linear.
+    """
+    found: list[Row] = []
+    for condition, demand in system.pairs:
+        if isinstance(condition, Integral):
+            found.append(_integral_row(system, condition, demand))
+        elif isinstance(condition, Limit):
+            found += limit_rows(system, condition, demand, raised.get(condition, 0))[0]
+        elif isinstance(condition, Equation):
+            found += _equation_rows(system, condition)
+        elif isinstance(condition, AbstractPointCondition) and system.plain and is_finite_at(system, condition.at):
+            found.append(_plain_row(system, condition, demand))
+        elif isinstance(condition, AbstractPointCondition):
+            found += _hermite_rows(system, condition, demand)
+    return found
+
+
+def _plain_row(system: System, condition: AbstractPointCondition, demand: sp.Expr) -> Row:
+    return [d - demand * below for d, below in _plain_derivatives(system, condition.at, condition.order)]
+
+
+def _plain_derivatives(system: System, at: sp.Expr, order: int) -> list[tuple[sp.Expr, sp.Expr]]:
+    """The derivative of each column's numerator at a place, beside its denominator."""
+    x, factor = system.problem.variable, system.shape.factor
+    weight = sp.factorial(order)
+    return [(weight * taylor(factor * above, x, at, order)[-1], below) for above, below in columns(system.shape)[0]]
+
+
+def _equation_rows(system: System, equation: Equation) -> list[Row]:
+    """A linear differential equation of a polynomial: its coefficients at the place times the derivatives."""
+    x, found = system.problem.variable, []
+    jets = [_plain_derivatives(system, equation.at, k) for k in range(equation.height + equation.order + 1)]
+    for residual in (r.subs(x, equation.at) for r in equation.residuals(x)):
+        free = residual.xreplace(dict.fromkeys(JET, sp.S.Zero))
+        slopes = [(k, slope) for k in range(len(jets)) if (slope := sp.diff(residual, JET[k])) != 0]
+        row = [
+            sp.Add(*(slope * jets[k][column][0] for k, slope in slopes)) + free * jets[0][column][1]
+            for column in range(len(jets[0]))
+        ]
+        found.append(row)
+    return found
+
+
+def _integral_row(system: System, condition: Integral, demand: sp.Expr) -> Row:
+    problem = system.problem
+    inside, rest = integral_parts(problem, condition)
+    pairs, _ = columns(system.shape)
+    weighted = condition.weight * system.shape.factor
+    if system.plain:
+        return [
+            integrated(weighted * above, problem.variable, inside) - (demand - rest) * below for above, below in pairs
+        ]
+    denominator = pairs[-1][1]
+    row = [closed_integral(weighted * above, denominator, problem.variable, inside) for above, _ in pairs]
+    row[-1] -= demand - rest
+    return row
+
+
+def limit_rows(system: System, limit: Limit, demand: sp.Expr, raised: int) -> tuple[list[Row], Row]:
+    """The rows of a limit, and the coefficient of Q that they take for the first that does not vanish there.
+
+    (f - minus)*scale tends to L where scale*factor*P - (minus*scale + L)*Q vanishes to a higher order than Q. The rows
+    are its series coefficients up to the order of Q's zero: the lowest that the columns have, raised while the rows
+    themselves force that coefficient of Q to vanish, and `raised` times more.
+    """
+    local = _local(system, limit)
+    order = lowest = min(map(_valuation, local.series(0).below))
+    widest = lowest + 2 * len(columns(system.shape)[0])
+    while True:
+        series = local.series(order)
+        found = series.rows(demand, order)
+        lead = [b.at(order) for b in series.below]
+        forced = order < widest and _spans(found, lead)
+        if not forced and raised == 0:
+            return found, lead
+        order, raised = order + 1, raised if forced else raised - 1
+
+
+@dataclass(frozen=True)
+class _Series:
+    """The series of scale*factor*P, of Q and of minus*scale*Q at the place of a limit, column by column."""
+
+    above: tuple[Laurent, ...]
+    below: tuple[Laurent, ...]
+    minus: tuple[Laurent, ...]
+
+    def rows(self, demand: sp.Expr, order: int) -> list[Row]:
+        """The coefficients up to `order`, those that are not empty."""
+        lowest = min(s.lowest for s in (*self.above, *self.minus, *self.below))
+        triples = list(zip(self.above, self.minus, self.below, strict=True))
+        found = (
+            [sp.expand(a.at(k) - m.at(k) - demand * b.at(k)) for a, m, b in triples] for k in range(lowest, order + 1)
+        )
+        return [row for row in found if any(row)]
+
+
+@dataclass(frozen=True)
+class _Local:
+    """The same in the local coordinate, as expressions."""
+
+    above: list[sp.Expr]
+    below: list[sp.Expr]
+    minus: list[sp.Expr]
+
+    def series(self, order: int) -> _Series:
+        return _Series(*(tuple(laurent(e, order) for e in group) for group in (self.above, self.below, self.minus)))
+
+
+def _local(system: System, limit: Limit) -> _Local:
+    pairs, _ = columns(system.shape)
+    scaled = limit.scale * system.shape.factor
+    parts = [scaled * a for a, _ in pairs] + [b for _, b in pairs] + [limit.minus * limit.scale * b for _, b in pairs]
+    side = -1 if same(limit.at, system.problem.support()[1]) else 1
+    moved = local_coordinate(parts, system.problem.variable, limit.at, side)
+    n = len(pairs)
+    return _Local(moved[:n], moved[n : 2 * n], moved[2 * n :])
+
+
+def _valuation(series: Laurent) -> float:
+    return next((series.lowest + k for k, c in enumerate(series.coefficients) if c != 0), float("inf"))
+
+
+def _spans(found: list[Row], lead: Row) -> bool:
+    """Whether the rows force what a further row takes for nonzero to vanish."""
+    if not any(lead):
+        return True
+    field = Field([e for row in [*found, lead] for e in row])
+    functional = [field.encode(e) for e in lead]
+    basis = field.null_space([[field.encode(e) for e in row] for row in found], len(lead))
+    return bool(basis) and not any(field.product(functional, vector) for vector in basis)
+
+
+def _hermite_rows(system: System, condition: AbstractPointCondition, demand: sp.Expr) -> list[Row]:
+    x, at, order = system.problem.variable, condition.at, condition.order
+    data = [_known_derivative(system, condition, k) / sp.factorial(k) for k in range(order)]
+    data.append(demand / sp.factorial(order))
+    pole, factor = factor_series(system.shape.factor, x, at, order)
+    pairs, _ = columns(system.shape)
+    found = []
+    # A pole of the factor must be met by zeros of P: the value brings the rows below the pole's order along.
+    for k in range(order + pole + 1) if order == 0 else [order + pole]:
+        row = []
+        for above, below in pairs:
+            p, q = taylor(above, x, at, k), taylor(below, x, at, k)
+            numerator = sum((factor[j] * p[k - j] for j in range(min(k, len(factor) - 1) + 1)), sp.S.Zero)
+            denominator = sum((data[j] * q[k - pole - j] for j in range(min(k - pole, order) + 1)), sp.S.Zero)
+            row.append(sp.expand(numerator - denominator))
+        found.append(row)
+    return found
+
+
+def _known_derivative(system: System, condition: AbstractPointCondition, order: int) -> sp.Expr:
+    """The derivative of a lower order that another condition at the same node asks for, or parity's zero."""
+    for other, demand in system.pairs:
+        if isinstance(other, AbstractPointCondition) and other.order == order and same(other.at, condition.at):
+            return demand
+    return sp.S.Zero

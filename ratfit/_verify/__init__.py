@@ -1,0 +1,3 @@
+"""Tests the conditions as they were stated, never a cleared form of them; rejects what fails or has a pole."""
+
+from ratfit._verify.verify import verify as verify

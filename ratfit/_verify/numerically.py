@@ -1,0 +1,105 @@
+"""What a candidate gives for a condition, by numerical differentiation, quadrature and limits at 50 digits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import mpmath
+import sympy as sp
+
+from ratfit._condition import JET, AbstractCondition, AbstractPointCondition, Equation, Integral, Limit
+from ratfit._generators import DIGITS
+from ratfit._integral import integral_parts
+from ratfit._parse import RatfitError
+from ratfit._poles import endpoint, function_of, multiprecise, polynomial_roots
+from ratfit._system import System
+from ratfit._target import sample_values
+
+DISTANCE, LIMIT_DIGITS = mpmath.mpf(10) ** -150, 500
+"""How far from its place a limit is looked at, and with how many digits: a root of the distance is still tiny."""
+
+
+def numerical_residual(
+    system: System, condition: AbstractCondition, demand: sp.Expr, expression: sp.Expr
+) -> mpmath.mpf:
+    """The largest |found - demanded| over sampled parameters, by numerical differentiation or quadrature."""
+    symbols = set[sp.Symbol]().union(
+        expression.free_symbols, demand.free_symbols, *(e.free_symbols for e in condition.expressions())
+    )
+    worst = mpmath.mpf(0)
+    for values in sample_values(symbols - {system.problem.variable}, ("1/7", "4/7", "9/11")):
+        with mpmath.workdps(DIGITS):
+            for found in _numerical(system, condition, expression, values):
+                if not mpmath.isfinite(found):
+                    raise RatfitError("the condition has no finite value")
+                worst = max(worst, abs(found - multiprecise(demand.xreplace(values))))
+    return worst
+
+
+def _numerical(
+    system: System, condition: AbstractCondition, expression: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]
+) -> list[mpmath.mpf]:
+    x = system.problem.variable
+    if isinstance(condition, Integral):
+        (low, high), rest = integral_parts(system.problem, condition)
+        function = function_of(condition.weight * expression, x, values)
+        places = _smooth_pieces(
+            condition.weight.xreplace(values), x, endpoint(low.xreplace(values)), endpoint(high.xreplace(values))
+        )
+        return [mpmath.quad(function, places) + multiprecise(rest.xreplace(values))]
+    if isinstance(condition, Limit):
+        return [_limit(system, condition, (expression - condition.minus) * condition.scale, values)]
+    if isinstance(condition, Equation):
+        return _equation_residuals(system, condition, expression, values)
+    assert isinstance(condition, AbstractPointCondition)
+    return [_derivative(system, condition.at, condition.order, expression, values)]
+
+
+def _limit(system: System, limit: Limit, function: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> mpmath.mpf:
+    """The function a tiny distance from the place of the limit."""
+    with mpmath.workdps(LIMIT_DIGITS):
+        at = limit.at.xreplace(values)
+        side = -1 if at == system.problem.support()[1].xreplace(values) else 1
+        place = (1 if at is sp.oo else -1) / DISTANCE if at.is_infinite else multiprecise(at) + side * DISTANCE
+        try:
+            return function_of(function, system.problem.variable, values)(place)
+        except ZeroDivisionError:
+            raise RatfitError(f"the limit at {limit.place} is infinite") from None
+
+
+def _equation_residuals(
+    system: System, equation: Equation, expression: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]
+) -> list[mpmath.mpf]:
+    orders = range(equation.height + equation.order + 1)
+    jet = [_derivative(system, equation.at, k, expression, values) for k in orders]
+    at = multiprecise(equation.at.xreplace(values))
+    x = system.problem.variable
+    symbols = sorted(values, key=lambda s: s.name)
+    given = [multiprecise(values[s]) for s in symbols]
+    return [
+        sp.lambdify([x, *symbols, *JET[: len(jet)]], residual, "mpmath", cse=False)(at, *given, *jet)
+        for residual in equation.residuals(x)
+    ]
+
+
+def _derivative(
+    system: System, place: sp.Expr, order: int, expression: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]
+) -> mpmath.mpf:
+    x = system.problem.variable
+    at = place.xreplace(values)
+    low, high = (end.xreplace(values) for end in system.problem.support())
+    side = 1 if at == low else -1 if at == high else 0
+    function = function_of(expression, x, values)
+    # A free power's derivative falls off like a small power of the step: the step must be far smaller than elsewhere.
+    digits = mpmath.mp.dps * (10 if system.shape.power is not None else 1)
+    try:
+        with mpmath.workdps(digits):
+            return mpmath.diff(lambda distance: function(multiprecise(at) + distance), 0, order, direction=side)
+    except ZeroDivisionError:
+        raise RatfitError(f"the candidate has a pole at {x} = {place}") from None
+
+
+def _smooth_pieces(weight: sp.Expr, x: sp.Symbol, low: mpmath.mpf, high: mpmath.mpf) -> list[mpmath.mpf]:
+    """The ends of a range and the kinks of the weight between them: quadrature needs smooth pieces."""
+    kinks = [r.real for a in weight.atoms(sp.Abs) if a.args[0].is_polynomial(x) for r in polynomial_roots(a.args[0], x)]
+    return [low, *sorted(k for k in kinks if low < k < high), high]

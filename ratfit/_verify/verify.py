@@ -1,0 +1,141 @@
+"""Tests the conditions as they were stated, never a cleared form of them; rejects what fails or has a pole."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import mpmath
+import sympy as sp
+
+from ratfit._condition import AbstractCondition, Limit, describe
+from ratfit._field import Related, is_zero
+from ratfit._fit import Candidate, Checked
+from ratfit._fraction import presentable
+from ratfit._parse import RatfitError
+from ratfit._poles import endpoint, function_of, multiprecise, poles
+from ratfit._solver import Solution
+from ratfit._system import System
+from ratfit._target import at_values, sample_values
+from ratfit._verify.candidate import Reduced, without_common_factors
+from ratfit._verify.exactly import found_exactly
+from ratfit._verify.numerically import numerical_residual
+
+TOLERANCE = mpmath.mpf("1e-30")
+"""A residual at 50 digits below this, relative to the size of the demand, counts as zero."""
+
+
+def verify(system: System, solution: Solution) -> Candidate:
+    """The candidate that a solution stands for, accepted (no reason) or rejected with its reason.
+
+    A candidate is rejected when it is complex, when its denominator vanishes identically, when a condition fails as
+    it was stated (a common factor that vanishes at a node makes such), or when it has a pole on the support that
+    neither the form's factor nor the target has.
+    """
+    shape, x = system.shape, system.problem.variable
+    if solution.nature:
+        return Candidate(shape.factor * solution.numerator / solution.denominator, reason=solution.nature)
+    candidate = without_common_factors(shape.factor, solution, x)
+    if candidate.denominator == 0:
+        return Candidate(sp.nan, reason="the denominator vanishes identically")
+    expression = presentable(candidate.factor, candidate.numerator, candidate.denominator, x, _middle(system))
+    free = {s: r for s, r in solution.free.items() if _depends(expression, s)}
+    idle = {s: sp.S.One for s in solution.free if s in expression.free_symbols and s not in free}
+    if idle:
+        return verify(system, Solution(solution.numerator.subs(idle), solution.denominator.subs(idle), free))
+    checked = tuple(
+        _check(system, condition, demand, candidate, expression)
+        for condition, demand in zip(system.conditions, system.demands, strict=True)
+    )
+    reason = _failure(checked, candidate.common) or ("" if free else _pole(system, candidate.denominator))
+    return Candidate(expression, free, checked, reason)
+
+
+def _depends(expression: sp.Expr, symbol: sp.Symbol) -> bool:
+    """Whether an expression changes with a symbol that occurs in it; a free name may cancel unseen."""
+    if symbol not in expression.free_symbols:
+        return False
+    others = expression.free_symbols - {symbol}
+    values = sample_values({symbol}, ("1/7", "4/7"))
+    for place in sample_values(others, ("2/7", "5/7")):
+        found = [sp.N(expression.xreplace(place).xreplace(v), 20) for v in values]
+        if not abs(found[0] - found[1]) <= sp.Float("1e-12") * (1 + abs(found[0])):
+            return True
+    return False
+
+
+def _middle(system: System) -> sp.Expr:
+    """A place inside the support: near its middle, or near its finite end."""
+    low, high = system.problem.support()
+    if low.is_infinite or high.is_infinite:
+        return sp.S.One if low.is_infinite and high.is_infinite else low + 1 if high.is_infinite else high - 1
+    return low + sp.Rational(4, 7) * (high - low)
+
+
+def _check(
+    system: System, condition: AbstractCondition, demand: sp.Expr, candidate: Reduced, expression: sp.Expr
+) -> Checked:
+    """One condition, exactly and at 50 digits."""
+    try:
+        exact = _all_zero([value - demand for value in found_exactly(system, condition, candidate)])
+        residual = numerical_residual(system, condition, demand, expression)
+    except Related:
+        return Checked(condition, demand, None, None)
+    except RatfitError:
+        return Checked(condition, demand, False, None)
+    numerically = residual < TOLERANCE * (1 + _size(demand))
+    holds = exact if exact == numerically else None
+    return Checked(condition, demand, holds, float(residual))
+
+
+def _all_zero(differences: list[sp.Expr]) -> bool | None:
+    found = [is_zero(difference) for difference in differences]
+    return False if False in found else None if None in found else True
+
+
+def _size(demand: sp.Expr) -> mpmath.mpf:
+    values = sample_values(demand.free_symbols, ("1/7",))[0]
+    return abs(multiprecise(demand.xreplace(values)))
+
+
+def _failure(checked: tuple[Checked, ...], common: sp.Expr) -> str:
+    """The conditions that do not hold, in words."""
+    failed = []
+    for c in checked:
+        if c.holds:
+            continue
+        what = describe(c.condition)
+        if c.holds is None:
+            return f"{what}: exact and numerical results disagree, so it is undecided"
+        found = f"off by {c.residual:.3g}" if c.residual is not None else "no finite value there"
+        failed.append(f"{what} should be {c.demand} ({found})")
+    if not failed:
+        return ""
+    cancelled = f"the factor {common} cancels, then " if common != 1 else ""
+    return f"{cancelled}{'; '.join(failed)}"
+
+
+def _pole(system: System, denominator: sp.Expr) -> str:
+    """The first pole on the closed support that the target does not have, in words."""
+    x = system.problem.variable
+    asked = [c.at for c in system.conditions if isinstance(c, Limit) and not c.at.is_infinite]
+    for root, values in poles(denominator, x, system.problem.support()):
+        if any(abs(multiprecise(at.xreplace(values)) - root) < mpmath.mpf("1e-12") for at in asked):
+            continue  # a limit at its place has been verified: the pole is no worse than what was asked for
+        if not _target_infinite(system, values, root):
+            return f"it has a pole at {x} = {mpmath.nstr(root, 8)}{at_values(values)}"
+    return ""
+
+
+def _target_infinite(system: System, values: Mapping[sp.Symbol, sp.Expr], at: mpmath.mpf) -> bool:
+    """Whether the target grows beyond bounds on the way to a place inside the support, as its own poles do."""
+    target = system.problem.target
+    if target is None:
+        return False
+    low, high = (end.xreplace(values) for end in system.problem.support())
+    side = 1 if at < (endpoint(low) + endpoint(high)) / 2 else -1
+    function = function_of(target.expression, target.variable, values)
+    try:
+        near, far = (abs(function(at + side * mpmath.mpf(step))) for step in ("1e-12", "1e-6"))
+    except ZeroDivisionError:
+        return True
+    return bool(near > 1000 * far)

@@ -9,7 +9,7 @@ no expression is evaluated while the search runs. Any other moment plays the tap
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -18,7 +18,7 @@ import sympy as sp
 
 from ratfit._lower import lower
 from ratfit._parse import RatfitError
-from ratfit._solver.nonlinear.quadrature import Rule
+from ratfit._solver.nonlinear.quadrature import Rule, Weighted
 from ratfit._solver.nonlinear.residuals import Moment, Residuals
 
 Symbols: TypeAlias = tuple[sp.Symbol, ...]
@@ -40,6 +40,18 @@ class Values:
     jacobian: np.ndarray
     size: np.ndarray
     broken: np.ndarray
+
+    def take(self, which: np.ndarray) -> Values:
+        return Values(self.value[which], self.jacobian[which], self.size[which], self.broken[which])
+
+    def where(self, chosen: np.ndarray, others: Values) -> Values:
+        """These values where `chosen` (places,), else the others."""
+        return Values(
+            np.where(chosen[:, None], self.value, others.value),
+            np.where(chosen[:, None, None], self.jacobian, others.jacobian),
+            np.where(chosen[:, None], self.size, others.size),
+            np.where(chosen, self.broken, others.broken),
+        )
 
 
 @dataclass(frozen=True)
@@ -97,6 +109,11 @@ class System:
                 for term in self.terms
             )
         )
+
+    def weighted(self, moment: int, unknowns: np.ndarray, parameters: np.ndarray) -> Weighted:
+        """A moment's integrand as the rules see it, at one place (unknowns,) and one row (1, parameters)."""
+        term = self.moments[moment]
+        return lambda rule: term.integrand(unknowns[None], term.prepare(parameters, rule))[0]
 
     def at(self, unknowns: np.ndarray, prepared: Prepared) -> Values:
         """The residuals at places of shape (places, unknowns), for as many prepared rows or for one."""
@@ -253,16 +270,18 @@ def _column(function: Function, parameters: np.ndarray) -> np.ndarray:
 
 def _plain(plain: sp.Expr, unknowns: Symbols, parameters: Symbols) -> _Quadratic | _Expression:
     expression = sp.expand(plain)
-    order = (1, *unknowns)
     found = _coefficients(expression, unknowns)
     if found is not None:
-        half = sp.Rational(1, 2)
-        table = [[found.get((i, j), found.get((j, i), sp.S.Zero)) for j in range(len(order))] for i in range(len(order))]
-        table = [[c if i == j else half * c for j, c in enumerate(row)] for i, row in enumerate(table)]
+        table = [[_entry(found, i, j) for j in range(1 + len(unknowns))] for i in range(1 + len(unknowns))]
         return _Quadratic(tuple(tuple(lower(c, parameters) for c in row) for row in table))
     symbols = (*unknowns, *parameters)
     terms = tuple(lower(term, symbols) for term in sp.Add.make_args(plain))
     return _Expression(terms, _gradient(plain, unknowns, symbols))
+
+
+def _entry(found: Mapping[tuple[int, int], sp.Expr], row: int, column: int) -> sp.Expr:
+    coefficient = found.get((min(row, column), max(row, column)), sp.S.Zero)
+    return coefficient if row == column else coefficient / 2
 
 
 def _coefficients(expression: sp.Expr, unknowns: Symbols) -> dict[tuple[int, int], sp.Expr] | None:

@@ -1,0 +1,142 @@
+"""Newton's method at many places at once: damped from far away, pure close to a root."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ratfit._solver.nonlinear.arrays import Prepared, System, Values
+
+ROOT, NEAR = 1e-9, 1e-7
+"""How small a residual must be relative to its terms, and Newton's step relative to the unknowns, at a root."""
+
+FLOOR = 1e-3
+"""The size below which an unknown counts as small: what is relative is relative to at least this."""
+
+DAMPING, TINY, CLOSE = 1e-3, 1e-15, 1e-26
+"""The damping at the start, that which keeps every matrix regular, and the weighted sum of squares that is enough."""
+
+_QUIET = np.errstate(all="ignore")  # a start may lie on a pole; what is no number is sorted out by comparison
+
+SINGULAR = 1e-13
+"""Singular values below this share of the greatest count as zero."""
+
+
+@_QUIET
+def roots(values: Values, unknowns: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Which places are roots, given Newton's next step from each (places, unknowns): (places,) of bool.
+
+    The residuals must be small against their terms; or the step must be small, and what it leaves over. The latter
+    because a residual u0 = 0 is met at u0 = 1e-17, though it is as large as its only term; the former because the step
+    from a root of an ill-conditioned system is not small. Terms that have all underflowed, exp(-1000), meet nothing.
+    """
+    scale = values.size + (np.abs(values.jacobian) * np.abs(unknowns)[:, None]).sum(2)
+    left = values.value + np.matmul(values.jacobian, step[..., None])[..., 0]
+    alive = (values.size > 0) | (values.jacobian != 0).any(2)
+    short = np.linalg.norm(step, axis=1) <= NEAR * (np.linalg.norm(unknowns, axis=1) + FLOOR)
+    met = np.abs(values.value) <= ROOT * scale
+    return ((met | (short[:, None] & (np.abs(left) <= ROOT * scale))) & alive & np.isfinite(scale)).all(1)
+
+
+@_QUIET
+def scales(values: Values, unknowns: np.ndarray) -> np.ndarray:
+    """What each residual is small against, (places, residuals): its terms, and what the unknowns do to it."""
+    return values.size + (np.abs(values.jacobian) * (np.abs(unknowns)[:, None] + FLOOR)).sum(2)
+
+
+@_QUIET
+def damped(system: System, starts: np.ndarray, prepared: Prepared, steps: int = 60) -> np.ndarray:
+    """Levenberg and Marquardt's method from every start, at most so many steps: where each ended.
+
+    A step that leads to a larger sum of squares is refused, and so is one across a pole: an integral that has one on
+    its range is no number, though its nodes make a smooth function of it, with false roots.
+
+    **Arguments:** `starts` (places, unknowns); `prepared` with one row for all or one for each. **Returns:** the same
+    shape as `starts`.
+    """
+    here, damping = starts.copy(), np.full(len(starts), DAMPING)
+    values = system.at(here, prepared)
+    weights = _weights(values)
+    active = np.flatnonzero(np.isfinite(_squares(values, weights)))
+    values = values.take(active)
+    for _ in range(steps):
+        if not len(active):
+            break
+        step = _marquardt(values, weights, damping[active])
+        moved = system.at(here[active] + step, prepared.take(active))
+        before, after = _squares(values, weights), _squares(moved, weights)
+        better = (after < before) & (values.broken | ~moved.broken)
+        here[active] += np.where(better[:, None], step, 0.0)
+        damping[active] *= np.where(better, 0.1, 4.0)
+        values = moved.where(better, values)
+        keep = (np.where(better, after, before) > CLOSE) & (damping[active] < 1e12)
+        active, values = active[keep], values.take(keep)
+    return here
+
+
+@_QUIET
+def newton(system: System, starts: np.ndarray, prepared: Prepared, steps: int = 6) -> tuple[np.ndarray, np.ndarray]:
+    """Newton's method by least squares, from places that lie close to a root.
+
+    **Arguments:** as for `damped`. **Returns:** the places (places, unknowns), each the best on its way; and which are
+    roots, (places,) of bool.
+    """
+    here, values = starts, system.at(starts, prepared)
+    step = full_step(values)
+    for _ in range(steps):
+        moved = system.at(here + step, prepared)
+        next_step = full_step(moved)
+        # The steps must become shorter (deuflhard2011's natural test): it is blind to the units of the residuals.
+        better = np.linalg.norm(next_step, axis=1) < np.linalg.norm(step, axis=1)
+        better &= np.isfinite(moved.value).all(1)
+        if not better.any():
+            break
+        here = np.where(better[:, None], here + step, here)
+        values, step = moved.where(better, values), np.where(better[:, None], next_step, step)
+    return here, roots(values, here, step)
+
+
+@_QUIET
+def full_step(values: Values) -> np.ndarray:
+    """The shortest solution of the linearised equations, in the sense of least squares: (places, unknowns)."""
+    finite = np.isfinite(values.jacobian).all((1, 2)) & np.isfinite(values.value).all(1)
+    # A row counts by its own scale: rows in units a million apart would look singular.
+    lengths = np.linalg.norm(values.jacobian, axis=2, keepdims=True)
+    rows = np.where(lengths > 0, 1 / lengths, 0.0)
+    jacobian = np.where(finite[:, None, None], values.jacobian * rows, 0.0)
+    value = np.where(finite[:, None], values.value * rows[..., 0], 0.0)
+    jacobian, value = np.nan_to_num(jacobian), np.nan_to_num(value)
+    return -np.matmul(np.linalg.pinv(jacobian, rcond=SINGULAR), value[..., None])[..., 0]
+
+
+@_QUIET
+def misfit(values: Values, unknowns: np.ndarray) -> np.ndarray:
+    """The largest residual relative to its scale, (places,); infinite where one is no number."""
+    share = np.abs(values.value) / scales(values, unknowns)
+    return np.where(np.isfinite(values.value), np.nan_to_num(share), np.inf).max(1)
+
+
+@_QUIET
+def _weights(values: Values) -> np.ndarray:
+    """One over the typical size of each residual: a condition stated in other units finds the same roots."""
+    sizes = np.where(np.isfinite(values.size) & (values.size > 0), values.size, np.nan)
+    typical = [np.median(column[np.isfinite(column)]) if np.isfinite(column).any() else 1.0 for column in sizes.T]
+    return 1 / np.array(typical)
+
+
+@_QUIET
+def _squares(values: Values, weights: np.ndarray) -> np.ndarray:
+    squares = ((values.value * weights) ** 2).sum(1)
+    return np.where(np.isfinite(squares) & np.isfinite(values.jacobian).all((1, 2)), squares, np.inf)
+
+
+@_QUIET
+def _marquardt(values: Values, weights: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    """The damped step, with the scaling of the unknowns by the lengths of the Jacobian's columns (more1978)."""
+    jacobian = values.jacobian * weights[:, None]
+    lengths = np.linalg.norm(jacobian, axis=1)
+    lengths = np.where((lengths > 0) & np.isfinite(lengths), lengths, 1.0)
+    jacobian = np.nan_to_num(jacobian / lengths[:, None])
+    transposed = jacobian.transpose(0, 2, 1)
+    normal = transposed @ jacobian + (damping[:, None, None] + TINY) * np.eye(jacobian.shape[2])
+    right = np.nan_to_num(transposed @ (values.value * weights)[..., None])
+    return -np.linalg.solve(normal, right)[..., 0] / lengths

@@ -27,7 +27,12 @@ from ratfit._target import parameter as parameter
 __version__ = "0.1.0"
 
 # What needs JAX, or is long and not always needed, is loaded on first use: `import ratfit` stays as light as sympy.
-_LATER = {"measure_error": "ratfit._error", "measure_speed": "ratfit._speed", "schedule": "ratfit._schedule"}
+_LATER = {
+    "measure_error": "ratfit._error",
+    "measure_speed": "ratfit._speed",
+    "schedule": "ratfit._schedule",
+    "study": "ratfit._study",
+}
 
 
 def __dir__() -> list[str]:

@@ -22,11 +22,11 @@ LAYERS = [
     ("_fit", "_poles", "_fraction"),
     ("_verify",),
     ("_derive",),
-    ("_schedule", "_sampling", "_record"),
+    ("_study", "_schedule", "_sampling", "_record"),
     ("_error", "_speed"),
     ("_bench",),
     ("gallery",),
-    ("report",),
+    ("report", "plot"),
     ("cli",),
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}

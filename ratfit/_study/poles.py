@@ -1,0 +1,74 @@
+"""Poles in the closed domain: order, and the coefficient that a Limit keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import mpmath
+import sympy as sp
+
+from ratfit._condition import Limit
+from ratfit._study.closed import closed_place, shorter
+from ratfit._study.crossings import WORK, Scans
+from ratfit._study.curve import SHOWN, Curve, decimal, growth
+from ratfit._study.fact import SYMBOLIC, Fact
+
+
+def pole_facts(scans: Scans) -> Iterator[Fact]:
+    """Places where the target grows like a power without bound, at the ends of the domain too."""
+    curve, seen = scans.curve, []
+    for place, closed, side in [*_ends(curve), *_inner(scans)]:
+        exponent = growth(curve.number(0), place, side)
+        if exponent is None or exponent >= 0 or any(abs(place - other) < mpmath.mpf("1e-30") for other in seen):
+            continue
+        seen.append(place)
+        yield _pole(scans, place, closed, -exponent)
+
+
+def _ends(curve: Curve) -> Iterator[tuple[mpmath.mpf, sp.Expr | None, int]]:
+    for end, place, side in zip(curve.target.domain, curve.ends, (1, -1), strict=True):
+        if not end.is_infinite:
+            yield place, end, side
+
+
+def _inner(scans: Scans) -> Iterator[tuple[mpmath.mpf, sp.Expr | None, int]]:
+    """Where the target or its slope changes its sign at a pole: one of odd and of even order."""
+    for order in (0, 1):
+        for crossing in scans.scan(order).crossings:
+            if crossing.nature == "pole":
+                yield crossing.place, None, 1
+
+
+def _pole(scans: Scans, place: mpmath.mpf, closed: sp.Expr | None, order: sp.Rational) -> Fact:
+    curve, clock = scans.curve, scans.clock
+    if closed is None:
+        inverse = clock.attempt(lambda: sp.together(1 / curve.target.expression)) or 1 / curve.target.expression
+        closed = closed_place(curve, inverse, place, clock)
+    kind = "pole" if order.is_Integer else "singularity"
+    if closed is None:
+        text = f"{kind} of order {order} at {mpmath.nstr(place, 12)}{curve.label}"
+        return Fact(kind, text, None, f"numeric to {SHOWN} digits", decimal(place))
+    distance = curve.x - closed if closed != curve.target.domain[1] or order.is_Integer else closed - curve.x
+    scale = distance**order
+    what = f"the coefficient of the pole at {closed}"
+    coefficient = clock.attempt(lambda: curve.target.limit(closed, scale, sp.S.Zero), what, 1.5)
+    if coefficient is None or not _confirmed(curve, closed, scale, coefficient):
+        return Fact(kind, f"{kind} of order {order} at {closed}{curve.label}", None, "numeric, its growth", closed)
+    coefficient = shorter(coefficient, clock)
+    condition = Limit(closed, scale=scale, equals=coefficient)
+    text = f"{kind} of order {order} at {closed}: {condition.what} -> {coefficient}"
+    return Fact(kind, text, condition, SYMBOLIC, closed, coefficient)
+
+
+def _confirmed(curve: Curve, closed: sp.Expr, scale: sp.Expr, coefficient: sp.Expr) -> bool:
+    from ratfit._poles import endpoint, multiprecise
+    from ratfit._study.curve import numbers_of, tends_to
+
+    side = -1 if closed == curve.target.domain[1] else 1
+    for values in curve.samples():
+        number = numbers_of((curve.target.expression * scale).xreplace(values), curve.x)
+        with mpmath.workdps(3 * WORK):
+            place, value = endpoint(closed.xreplace(values)), multiprecise(coefficient.xreplace(values))
+            if not tends_to(number, place, side, value):
+                return False
+    return True

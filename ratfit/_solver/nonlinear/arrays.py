@@ -85,13 +85,12 @@ class System:
     def of(residuals: Residuals, parameters: Sequence[sp.Symbol] = ()) -> System:
         """Raises RatfitError for a symbol that is no unknown, parameter or variable, or a function arrays lack."""
         unknowns, known = residuals.unknowns, tuple(parameters)
-        terms: list = []
+        terms: list[_Quadratic | _Expression | _Fraction | _Moment] = []
         places: list[int] = []
         for place, part in enumerate(residuals.parts):
-            added = [_plain(part.plain, unknowns, known)]
-            added += [_integral(moment, residuals.variable, unknowns, known) for moment in part.moments]
-            terms += added
-            places += [place] * len(added)
+            terms.append(_plain(part.plain, unknowns, known))
+            terms += [_integral(moment, residuals.variable, unknowns, known) for moment in part.moments]
+            places += [place] * (len(terms) - len(places))
         return System(unknowns, known, residuals.homogeneous, len(residuals.parts), tuple(terms), tuple(places))
 
     @property
@@ -101,14 +100,13 @@ class System:
     def prepare(self, parameters: np.ndarray, rules: Sequence[Rule]) -> Prepared:
         """**Arguments:** `parameters` (rows, parameters); `rules`, one for each moment."""
         remaining = iter(rules)
-        return Prepared(
-            tuple(
-                term.prepare(parameters, next(remaining))
-                if isinstance(term, (_Fraction, _Moment))
-                else term.prepare(parameters)
-                for term in self.terms
-            )
-        )
+        arrays: list[tuple[np.ndarray, ...]] = []
+        for term in self.terms:
+            if isinstance(term, (_Fraction, _Moment)):
+                arrays.append(term.prepare(parameters, next(remaining)))
+            else:
+                arrays.append(term.prepare(parameters))
+        return Prepared(tuple(arrays))
 
     def weighted(self, moment: int, unknowns: np.ndarray, parameters: np.ndarray) -> Weighted:
         """A moment's integrand as the rules see it, at one place (unknowns,) and one row (1, parameters)."""
@@ -314,7 +312,7 @@ def _integral(moment: Moment, variable: sp.Symbol, unknowns: Symbols, parameters
 
 def _end(end: sp.Expr, parameters: Symbols) -> Function:
     if end in (sp.oo, -sp.oo):
-        return lambda *values: float(end)
+        return lambda *values: np.array(float(end))
     return lower(end, parameters)
 
 
@@ -344,7 +342,5 @@ def _gradient(expression: sp.Expr, unknowns: Symbols, symbols: Symbols) -> Calla
 
 def _difference(value: Function, columns: list, place: int) -> np.ndarray:
     step = STEP * np.maximum(np.abs(columns[place]), 1e-3)
-    left, right = (
-        value(*columns[:place], columns[place] + way * step, *columns[place + 1 :]) for way in (-1.0, 1.0)
-    )
+    left, right = (value(*columns[:place], columns[place] + way * step, *columns[place + 1 :]) for way in (-1.0, 1.0))
     return (right - left) / (2 * step)

@@ -12,9 +12,9 @@ import numpy as np
 from ratfit._parse import RatfitError
 from ratfit._solver.nonlinear.arrays import Prepared, System
 from ratfit._solver.nonlinear.newton import FLOOR, full_step, newton
-from ratfit._solver.nonlinear.quadrature import FEWEST, MOST, Rule, confirmed
+from ratfit._solver.nonlinear.quadrature import Rule
 from ratfit._solver.nonlinear.residuals import Residuals
-from ratfit._solver.nonlinear.search import SETTLED, Settled, is_same, search_system
+from ratfit._solver.nonlinear.search import Settled, is_same, search_system, settle
 from ratfit._target import Parameter
 
 NODES = {1: 17, 2: 9}
@@ -113,7 +113,10 @@ def _followed(
         track = _Track(np.full((len(values), len(system.unknowns)), np.nan), np.zeros(len(values), bool))
         track.coefficients[node], track.done[node] = root.root, True
         tracks.append(track)
-    rules = [max(each) for each in zip(*(root.rules for root in roots), strict=True)]
+    # tanh-sinh serves every root, where one of them needs it.
+    rules = [
+        max(each, key=lambda rule: (rule.name, rule.count)) for each in zip(*(r.rules for r in roots), strict=True)
+    ]
     tried: set[tuple[int, int, int]] = set()
     while pairs := [pair for pair in _frontier(tracks, shape) if pair not in tried]:
         tried.update(pairs)
@@ -178,6 +181,17 @@ def _corrected(system: System, starts: np.ndarray, prepared: Prepared) -> tuple[
 def _confirm(system: System, values: np.ndarray, rules: Sequence[Rule], track: _Track) -> None:
     """Gives up the nodes at which an integral does not settle, and solves again where it takes more nodes."""
     for node in np.flatnonzero(track.done):
-        settled = _settled(system, values[[node]], rules, track.coefficients[node])
+        settled = settle(system, values[[node]], rules, track.coefficients[node])
         track.done[node] = settled is not None
-        track.coefficients[node] = np.nan if settled is None else settled
+        track.coefficients[node] = settled.root if settled else np.nan
+
+
+def _distinct(tracks: Sequence[_Track], homogeneous: bool) -> list[_Track]:
+    """Without those that run along an earlier one: two branches may meet at a node, not at half of them."""
+    kept: list[_Track] = []
+    for track in tracks:
+        nodes = np.flatnonzero(track.done)
+        shared = [sum(other.holds(int(n), track.coefficients[n], homogeneous) for n in nodes) for other in kept]
+        if 2 * max(shared, default=0) < len(nodes):
+            kept.append(track)
+    return kept

@@ -12,6 +12,9 @@ ROOT, NEAR = 1e-9, 1e-7
 FLOOR = 1e-3
 """The size below which an unknown counts as small: what is relative is relative to at least this."""
 
+ROUNDING = 1e-14
+"""What rounding leaves of a linear equation, relative to its coefficients and unknowns."""
+
 DAMPING, TINY, CLOSE = 1e-3, 1e-15, 1e-26
 """The damping at the start, that which keeps every matrix regular, and the weighted sum of squares that is enough."""
 
@@ -29,12 +32,14 @@ def roots(values: Values, unknowns: np.ndarray, step: np.ndarray) -> np.ndarray:
     because a residual u0 = 0 is met at u0 = 1e-17, though it is as large as its only term; the former because the step
     from a root of an ill-conditioned system is not small. Terms that have all underflowed, exp(-1000), meet nothing.
     """
+    length = np.linalg.norm(unknowns, axis=1) + FLOOR
     scale = values.size + (np.abs(values.jacobian) * np.abs(unknowns)[:, None]).sum(2)
-    left = values.value + np.matmul(values.jacobian, step[..., None])[..., 0]
     alive = (values.size > 0) | (values.jacobian != 0).any(2)
-    short = np.linalg.norm(step, axis=1) <= NEAR * (np.linalg.norm(unknowns, axis=1) + FLOOR)
-    met = np.abs(values.value) <= ROOT * scale
-    return ((met | (short[:, None] & (np.abs(left) <= ROOT * scale))) & alive & np.isfinite(scale)).all(1)
+    left = np.abs(values.value + np.matmul(values.jacobian, step[..., None])[..., 0])
+    rounding = ROUNDING * np.linalg.norm(values.jacobian, axis=2) * length[:, None]
+    short = np.linalg.norm(step, axis=1) <= NEAR * length
+    met = (np.abs(values.value) <= ROOT * scale) | (short[:, None] & (left <= ROOT * scale + rounding))
+    return (met & alive & np.isfinite(scale)).all(1)
 
 
 @_QUIET
@@ -97,15 +102,27 @@ def newton(system: System, starts: np.ndarray, prepared: Prepared, steps: int = 
 
 @_QUIET
 def full_step(values: Values) -> np.ndarray:
-    """The shortest solution of the linearised equations, in the sense of least squares: (places, unknowns)."""
+    """The least squares solution of the linearised equations: (places, unknowns).
+
+    Rows and then columns are scaled to length 1: unknowns or conditions in units a million apart look singular
+    otherwise. Where the equations leave the step open, the shortest in the scaled unknowns.
+    """
     finite = np.isfinite(values.jacobian).all((1, 2)) & np.isfinite(values.value).all(1)
-    # A row counts by its own scale: rows in units a million apart would look singular.
-    lengths = np.linalg.norm(values.jacobian, axis=2, keepdims=True)
-    rows = np.where(lengths > 0, 1 / lengths, 0.0)
-    jacobian = np.where(finite[:, None, None], values.jacobian * rows, 0.0)
-    value = np.where(finite[:, None], values.value * rows[..., 0], 0.0)
-    jacobian, value = np.nan_to_num(jacobian), np.nan_to_num(value)
-    return -np.matmul(np.linalg.pinv(jacobian, rcond=SINGULAR), value[..., None])[..., 0]
+    jacobian = np.where(finite[:, None, None], values.jacobian, 0.0)
+    rows = _lengths(jacobian, 2)
+    jacobian = jacobian / rows[:, :, None]
+    columns = _lengths(jacobian, 1)
+    value = np.where(finite[:, None], values.value / rows, 0.0)
+    inverse = np.linalg.pinv(jacobian / columns[:, None], rcond=SINGULAR)
+    return -np.matmul(inverse, value[..., None])[..., 0] / columns
+
+
+def _lengths(matrices: np.ndarray, axis: int) -> np.ndarray:
+    """Of the rows or columns, 1 for those of zeros."""
+    largest = np.abs(matrices).max(axis, keepdims=True)  # first, lest squares overflow
+    largest = np.where(largest > 0, largest, 1.0)
+    lengths = np.linalg.norm(matrices / largest, axis=axis) * largest.squeeze(axis)
+    return np.where(lengths > 0, lengths, 1.0)
 
 
 @_QUIET
@@ -132,10 +149,9 @@ def _squares(values: Values, weights: np.ndarray) -> np.ndarray:
 @_QUIET
 def _marquardt(values: Values, weights: np.ndarray, damping: np.ndarray) -> np.ndarray:
     """The damped step, with the scaling of the unknowns by the lengths of the Jacobian's columns (more1978)."""
-    jacobian = values.jacobian * weights[:, None]
-    lengths = np.linalg.norm(jacobian, axis=1)
-    lengths = np.where((lengths > 0) & np.isfinite(lengths), lengths, 1.0)
-    jacobian = np.nan_to_num(jacobian / lengths[:, None])
+    jacobian = np.nan_to_num(values.jacobian * weights[:, None])
+    lengths = _lengths(jacobian, 1)
+    jacobian = jacobian / lengths[:, None]
     transposed = jacobian.transpose(0, 2, 1)
     normal = transposed @ jacobian + (damping[:, None, None] + TINY) * np.eye(jacobian.shape[2])
     right = np.nan_to_num(transposed @ (values.value * weights)[..., None])

@@ -23,7 +23,7 @@ FARTHEST = 5.0
 """Where the double exponential rules end: exp(-pi/2*sinh(5)) is about 1e-51, so x**(-9/10) at 0 loses 1e-5 at worst."""
 
 
-@dataclass(frozen=True, order=True)
+@dataclass(frozen=True)
 class Rule:
     """Gauss-Legendre nodes ("gauss"), or the trapezoidal rule after a double exponential map ("tanh-sinh").
 

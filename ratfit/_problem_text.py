@@ -24,7 +24,7 @@ def to_tables(problem: Problem) -> dict[str, Any]:
         tables["choice"] = {n: str(v) for n, v in problem.choice.items()}
     if problem.references:
         tables["reference"] = [_reference_table(r) for r in problem.references]
-    tables["condition"] = [_condition_table(c) for c in problem.conditions]
+    tables["condition"] = [condition_table(c) for c in problem.conditions]
     return tables
 
 
@@ -54,7 +54,8 @@ def _reference_table(reference: Reference) -> dict[str, Any]:
     )
 
 
-def _condition_table(condition: AbstractCondition) -> dict[str, Any]:
+def condition_table(condition: AbstractCondition) -> dict[str, Any]:
+    """The [[condition]] table of a condition, without the keys that it leaves at their defaults."""
     table: dict[str, Any] = {"kind": condition.kind}
     if isinstance(condition, Integral):
         table["weight"] = str(condition.weight)

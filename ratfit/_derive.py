@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import sympy as sp
 
-from ratfit._condition import AbstractCondition, describe
+from ratfit._condition import Limit
 from ratfit._deadline import TimeLimit
+from ratfit._diagnosis import advice, contradiction, explained
 from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Fit
 from ratfit._parse import RatfitError
@@ -17,57 +19,82 @@ from ratfit._solver import Solution, Undecided, pick, solve
 from ratfit._system import System, equations, polynomial_equations
 from ratfit._verify import verify
 
-CLASH_SECONDS = 10.0
-"""How long the search for a smallest set of clashing conditions may take before it names all of them."""
+POLYNOMIAL_SHARE = 0.4
+"""The part of the time that the polynomial route may take before many starts are tried instead."""
 
 
-def derive(problem: Problem | str | Path, *, route: str = "auto", timeout: float | None = 60.0) -> Fit:
-    """Derives the fit of a problem: every fraction (or power) of its form that keeps all its kernel conditions.
+@dataclass
+class _Known:
+    """What is known so far: it is kept when the time runs out."""
+
+    words: dict[str, str] = field(default_factory=dict)
+    route: str = ""
+    candidates: list[Candidate] = field(default_factory=list)
+
+
+def derive(problem: Problem | str | Path, *, route: str = "auto", timeout: float | None = 60.0, seed: int = 0) -> Fit:
+    """Derives the fit of a problem: every fraction (or other expression) of its form that keeps its kernel conditions.
 
     Arguments: `problem`, or the name of a gallery card ("eq12"), or a problem file; `route`, "auto" or the name of
-    the one to force; `timeout` in seconds, None for no limit. Returns a Fit; when there is none, its status and
-    reasons say why. Raises RatfitError for a problem that makes no sense.
+    the one to force; `timeout` in seconds, None for no limit; `seed` of the nonlinear route's starts. Returns a Fit;
+    when there is none, its status and reasons say why. Raises RatfitError for a problem that makes no sense.
     """
     if not isinstance(problem, Problem):
         from ratfit.gallery import find_problem
 
         problem = find_problem(str(problem))
-    known: dict[str, str] = {}
+    known = _Known(route=route)
     with TimeLimit(timeout) as limit:
-        fit = _derived(problem, route, known)
+        fit = _derived(problem, route, known, timeout, seed)
     if limit.passed:
-        so_far = ", ".join(f"{k} {v}" for k, v in known.items()) or "the target's own data were not found"
-        reason = f"gave up after {timeout:g} s ({so_far}); allow more with --timeout, or state equals"
-        return Fit(problem, "timeout", known.get("route", route), reasons=(reason,))
+        return _out_of_time(problem, known, timeout)
     return fit
 
 
-def _derived(problem: Problem, route: str, known: dict[str, str]) -> Fit:
+def _out_of_time(problem: Problem, known: _Known, timeout: float | None) -> Fit:
+    so_far = ", ".join(f"{k} {v}" for k, v in known.words.items()) or "the target's own data were not found"
+    kept = _distinct(known.candidates)
+    found = [c for c in kept if not c.reason]
+    names = f"; found so far: {', '.join(str(c.expression) for c in found)}" if found else ""
+    reason = f"gave up after {timeout:g} s ({so_far}){names}; allow more with --timeout, or state equals"
+    rejected = tuple(c for c in kept if c.reason)
+    return Fit(problem, "timeout", known.route, tuple(found), rejected, (reason,))
+
+
+def _derived(problem: Problem, route: str, known: _Known, timeout: float | None, seed: int) -> Fit:
     system = equations(problem)
-    route = pick(system, route)
-    known |= {"route": route, "conditions": str(len(problem.conditions)), "unknowns": str(len(system.shape.unknowns))}
-    if contradiction := _contradiction(system):
-        return Fit(problem, "inconsistent", route, reasons=(contradiction,))
+    known.route = taken = pick(system, route)
+    known.words |= {"route": taken, "conditions": str(len(problem.conditions))}
+    known.words["unknowns"] = str(len(system.shape.unknowns))
+    if clash := contradiction(system):
+        return Fit(problem, "inconsistent", taken, reasons=(clash,))
     try:
-        solutions = solve(system, route)
+        _collect(system, solve(system, taken, seed), known, taken == route or taken != "polynomial", timeout)
     except (Undecided, Related) as error:
-        return Fit(problem, "rejected", route, reasons=(str(error),))
-    known["solutions to verify"] = str(len(solutions))
-    candidates = _distinct([verify(system, solution) for solution in solutions])
-    fit = _assembled(problem, route, candidates, _shown_equations(system, route))
+        if taken != "polynomial" or route == taken:
+            return Fit(problem, "rejected", taken, reasons=(str(error),))
+        known.route = taken = "nonlinear"
+        try:
+            _collect(system, solve(system, taken, seed), known, True, timeout)
+        except (Undecided, Related, RatfitError):
+            return Fit(problem, "rejected", "polynomial", reasons=(str(error),))
+    fit = _assembled(problem, taken, _distinct(known.candidates), _shown_equations(system, taken))
     if not fit.candidates:
-        return _with_clash(fit, route)
+        return explained(fit, route if taken != "nonlinear" else taken)
     _check_choice(fit, system)
-    return fit
+    return replace(fit, advice=advice(system, fit)) if taken == "linear" else fit
 
 
-def _contradiction(system: System) -> str:
-    """Two conditions that ask for different numbers at the same place, in words."""
-    pairs = list(zip(system.conditions, system.demands, strict=True))
-    for (a, demand), (b, other) in combinations(pairs, 2):
-        if describe(a) == describe(b) and is_zero(demand - other) is False:
-            return f"{describe(a)} is asked to be {demand} and to be {other}; drop one of them"
-    return ""
+def _collect(
+    system: System, solutions: Iterable[Solution], known: _Known, unlimited: bool, timeout: float | None
+) -> None:
+    """Verifies solutions as they come; Undecided where a route that has an alternative takes too long."""
+    known.candidates = []
+    with TimeLimit(None if unlimited or timeout is None else POLYNOMIAL_SHARE * timeout) as limit:
+        for solution in solutions:
+            known.candidates.append(verify(system, solution))
+    if limit.passed:
+        raise Undecided(f"the polynomial route took longer than {POLYNOMIAL_SHARE * (timeout or 0):g} s")
 
 
 def _distinct(candidates: list[Candidate]) -> list[Candidate]:
@@ -104,7 +131,7 @@ def _assembled(problem: Problem, route: str, candidates: list[Candidate], shown:
 
 def _shown_equations(system: System, route: str) -> tuple[str, ...]:
     """The polynomial system as a paper prints it: with a free scale, the leading numerator coefficient is 1."""
-    if route != "polynomial":
+    if route != "polynomial" or any(isinstance(c, Limit) for c in system.conditions):
         return ()
     lead = dict.fromkeys(_leading(system), 1)
     return tuple(f"{e.subs(lead)} = 0" for e in polynomial_equations(system))
@@ -133,41 +160,3 @@ def _check_choice(fit: Fit, system: System) -> None:
         if chosen.reason:
             choice = ", ".join(f"{s} = {v}" for s, v in fit.choice.items())
             raise RatfitError(f"choice {choice}: {chosen.reason}; choose another value")
-
-
-def _with_clash(fit: Fit, route: str) -> Fit:
-    """The honest no, with a smallest set of conditions that no fraction of the form can keep together."""
-    problem = fit.problem
-    reasons = [f"{c.expression}: {c.reason}" for c in fit.rejected]
-    if fit.rejected and any(c.conditions and all(k.holds for k in c.conditions) for c in fit.rejected):
-        reasons.append(
-            "the conditions hold, but the fit has a pole: narrow the parameters' ranges or the domain, "
-            "raise a degree, or add a condition"
-        )
-        return Fit(problem, fit.status, fit.route, (), fit.rejected, tuple(reasons), fit.equations)
-    clash, proved = _smallest_clash(problem, route)
-    names = "; ".join(describe(c) for c in clash)
-    what = "these conditions clash" if len(clash) < len(problem.conditions) else "all conditions together clash"
-    search = "" if proved else " (the search for fewer was cut short)"
-    reasons.append(f"{what} in this form: {names}{search}. Drop one of them or raise a degree")
-    return Fit(problem, fit.status, fit.route, (), fit.rejected, tuple(reasons), fit.equations)
-
-
-def _smallest_clash(problem: Problem, route: str) -> tuple[tuple[AbstractCondition, ...], bool]:
-    """The smallest subset of the conditions that has no fit, and whether the search was finished."""
-    with TimeLimit(CLASH_SECONDS) as limit:
-        for size in range(1, len(problem.conditions)):
-            for subset in combinations(problem.conditions, size):
-                if not _consistent(problem.with_conditions(subset), route):
-                    return subset, True
-    return problem.conditions, not limit.passed
-
-
-def _consistent(problem: Problem, route: str) -> bool:
-    """Whether a subset has a fit; one that a route cannot decide counts as consistent, so that no clash is invented."""
-    try:
-        system = equations(problem)
-        solutions = solve(system, pick(system, "auto" if route == "linear" else route))
-        return any(not verify(system, s).reason for s in solutions)
-    except (RatfitError, Undecided):  # Related is a RatfitError too
-        return True

@@ -40,12 +40,14 @@ class Candidate:
     """A solution of the equations with all common factors cancelled: factor * numerator/denominator.
 
     `free` holds what the conditions leave open, with its range; `reason` is empty for an accepted candidate.
+    `certificate` is empty for closed forms; for coefficients found as numbers it says what is proved of them.
     """
 
     expression: sp.Expr
     free: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
     conditions: tuple[Checked, ...] = ()
     reason: Reason = ""
+    certificate: str = ""
 
 
 @dataclass(frozen=True, repr=False)
@@ -55,7 +57,8 @@ class Fit:
     `status` is one of STATUSES; with "unique", "family" and "several" there is an `expression` (with several
     accepted candidates the first of `candidates`), written in the variable, the parameters and the free names, valid
     on the form's support. `rejected` keeps what satisfied the equations and failed as an answer; `reasons` says why
-    there is no answer. `equations` are those of the route taken, as text in the unknowns, for a person to read.
+    there is no answer. `equations` are those of the route taken, as text in the unknowns, for a person to read;
+    `advice` says what else is worth knowing. A timeout has no answer, and keeps the `candidates` found before it.
     Call it to evaluate it: `fit(0.3, m=0.2)` takes floats, NumPy and JAX arrays.
     """
 
@@ -66,10 +69,11 @@ class Fit:
     rejected: tuple[Candidate, ...] = ()
     reasons: tuple[Reason, ...] = ()
     equations: tuple[str, ...] = ()
+    advice: tuple[str, ...] = ()
 
     @property
     def expression(self) -> sp.Expr | None:
-        return self.candidates[0].expression if self.candidates else None
+        return self.candidates[0].expression if self.candidates and self.status != "timeout" else None
 
     @property
     def free(self) -> Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]]:

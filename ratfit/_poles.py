@@ -81,7 +81,15 @@ def _real_zeros(denominator: sp.Expr, x: sp.Symbol, ends: Sequence[mpmath.mpf]) 
 @lru_cache(maxsize=100)
 def polynomial_roots(polynomial: sp.Expr, x: sp.Symbol) -> list[mpmath.mpc]:
     """The complex roots at DIGITS digits, kept because coprimality and poles both ask for them."""
-    coefficients = [multiprecise(c) for c in sp.Poly(polynomial, x).all_coeffs()]
+    poly = sp.Poly(polynomial, x)
+    if all(c.is_Rational for c in poly.all_coeffs()) and poly.degree() > 1:
+        parts = poly.sqf_list()[1]  # exact: multiple roots converge slowly and lose half their digits
+        return [root for part, times in parts for root in _simple_roots(part) * times]
+    return _simple_roots(poly)
+
+
+def _simple_roots(poly: sp.Poly) -> list[mpmath.mpc]:
+    coefficients = [multiprecise(c) for c in poly.all_coeffs()]
     size = max(map(abs, coefficients))
     while coefficients and abs(coefficients[0]) < mpmath.mpf("1e-45") * size:
         coefficients = coefficients[1:]

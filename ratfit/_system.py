@@ -157,6 +157,8 @@ def residuals(system: System, condition: AbstractCondition, demand: sp.Expr) -> 
 def _derivative(system: System, at: sp.Expr, order: int) -> sp.Expr:
     x = system.problem.variable
     value = sp.diff(system.shape.expression, x, order).subs(x, at)
+    # A free power of zero is zero where its exponent is positive: whether it is, verifying tells.
+    value = value.xreplace({p: sp.S.Zero for p in value.atoms(sp.Pow) if p.base == 0 and not p.exp.is_number})
     if value.has(sp.nan, sp.zoo):
         raise RatfitError(f"the form has no value at {x} = {at}; move the condition or change the factor")
     return value

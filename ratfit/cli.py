@@ -173,13 +173,13 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     if options["unique"] and fit.status in ("family", "several"):
         fit = _refused(fit)
     _write(_rendered(fit, shown, options["format_"]), options["out"])
-    return 0 if fit.candidates else 1
+    return 0 if fit.expression is not None else 1
 
 
 def _derived(problem: Problem, options: dict[str, Any]) -> Fit:
     seconds = _positive(options["timeout"])
     with waiting(f"deriving {problem.name}, for at most {seconds:g} s (Ctrl-C stops)"):
-        return derive_fit(problem, route=options["route"], timeout=seconds)
+        return derive_fit(problem, route=options["route"], timeout=seconds, seed=options["seed"])
 
 
 def _refused(fit: Fit) -> Fit:
@@ -278,7 +278,7 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
     names = [p.name for p in found.parameters]
     found = found.with_choice({n: v for n, v in values.items() if n not in names})
     fit = _derived(found, options)
-    if not fit.candidates:
+    if fit.expression is None:
         print(_rendered(fit, shown, options["format_"]))
         return 1
     how = Measuring(options["samples"], options["seed"], options["sampling"], options["dtype"], options["backend"])

@@ -21,6 +21,7 @@ LAYERS = [
     ("_solver",),
     ("_fit", "_poles", "_fraction"),
     ("_verify",),
+    ("_diagnosis",),
     ("_derive",),
     ("_study", "_schedule", "_sampling", "_record"),
     ("_error", "_speed"),

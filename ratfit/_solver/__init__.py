@@ -3,5 +3,6 @@
 from ratfit._solver.auto import ROUTES as ROUTES
 from ratfit._solver.auto import pick as pick
 from ratfit._solver.auto import solve as solve
+from ratfit._solver.solution import Numbers as Numbers
 from ratfit._solver.solution import Solution as Solution
 from ratfit._solver.solution import Undecided as Undecided

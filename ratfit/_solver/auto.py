@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 import sympy as sp
 
@@ -16,12 +16,12 @@ from ratfit._solver.power import solve_power
 from ratfit._solver.solution import Solution
 from ratfit._system import System, completed, residuals
 
-ROUTES: Mapping[str, Callable[[System], list[Solution]]] = {
+EXACT: Mapping[str, Callable[[System], list[Solution]]] = {
     "linear": solve_linear,
     "polynomial": solve_polynomial,
     "power": solve_power,
-    "nonlinear": solve_nonlinear,
 }
+ROUTES = (*EXACT, "nonlinear")
 
 
 def pick(system: System, route: str = "auto") -> str:
@@ -66,8 +66,7 @@ def is_polynomial(system: System) -> bool:
     shape = system.shape
     if system.fraction and not system.integrals and not is_linear(system):
         completion = system.completion
-        limits = any(isinstance(c, Limit) for c in system.conditions)
-        return not limits and all(e.is_polynomial(*completion.symbols) for e in completion.leftover)
+        return bool(completion.symbols) and all(e.is_polynomial(*completion.symbols) for e in completion.leftover)
     if not (shape.numerator.is_polynomial(*shape.unknowns) and shape.denominator.is_polynomial(*shape.unknowns)):
         return False
     try:
@@ -77,6 +76,6 @@ def is_polynomial(system: System) -> bool:
     return all(sp.fraction(sp.together(r))[0].is_polynomial(*shape.unknowns) for r in special)
 
 
-def solve(system: System, route: str) -> list[Solution]:
-    """All that the named route finds; nothing is verified yet."""
-    return ROUTES[route](system)
+def solve(system: System, route: str, seed: int = 0) -> Iterable[Solution]:
+    """All that the named route finds, perhaps one by one; nothing is verified yet."""
+    return solve_nonlinear(system, seed) if route == "nonlinear" else EXACT[route](system)

@@ -13,9 +13,9 @@ import sympy as sp
 from ratfit._field import Field
 from ratfit._rows import rows
 from ratfit._solver.elimination import is_complex, solutions
-from ratfit._solver.linear import fractions, kernel
+from ratfit._solver.linear import fractions, null_space
 from ratfit._solver.solution import Solution
-from ratfit._system import System, columns, completed
+from ratfit._system import System, columns, completed, of_pairs
 
 MAX_MINORS = 30
 """Minors beyond that many add nothing new in practice; verification would reject what they had excluded."""
@@ -37,7 +37,8 @@ def solve_incomplete(system: System) -> list[Solution]:
             found.append(Solution(system.shape.numerator, system.shape.denominator, nature=nature))
             continue
         open_ = {s: (-sp.oo, sp.oo) for s in symbols if s not in assignment}
-        for solution in fractions(system, kernel([[e.subs(assignment) for e in row] for row in matrix], width)):
+        known = of_pairs(whole, [(c, d.subs(assignment)) for c, d in whole.pairs])
+        for solution in fractions(system, null_space(known)):
             found.append(
                 Solution(solution.numerator, solution.denominator, {**solution.free, **open_}, solution.nature)
             )

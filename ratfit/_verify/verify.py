@@ -13,15 +13,19 @@ from ratfit._fit import Candidate, Checked
 from ratfit._fraction import presentable
 from ratfit._parse import RatfitError
 from ratfit._poles import endpoint, function_of, multiprecise, poles
-from ratfit._solver import Solution
+from ratfit._solver import Numbers, Solution
 from ratfit._system import System
 from ratfit._target import at_values, sample_values
 from ratfit._verify.candidate import Reduced, without_common_factors
 from ratfit._verify.exactly import found_exactly
+from ratfit._verify.numbers import shown
 from ratfit._verify.numerically import numerical_residual
 
 TOLERANCE = mpmath.mpf("1e-30")
 """A residual at 50 digits below this, relative to the size of the demand, counts as zero."""
+
+NUMERICAL = mpmath.mpf("1e-40")
+"""The same for conditions that are kept by numbers to their last digits, and not by algebra."""
 
 
 def verify(system: System, solution: Solution) -> Candidate:
@@ -37,6 +41,8 @@ def verify(system: System, solution: Solution) -> Candidate:
     candidate = without_common_factors(shape.factor, solution, x)
     if candidate.denominator == 0:
         return Candidate(sp.nan, reason="the denominator vanishes identically")
+    if solution.numbers is not None:
+        return _verified_numbers(system, candidate, solution.numbers)
     expression = presentable(candidate.factor, candidate.numerator, candidate.denominator, x, _middle(system))
     free = {s: r for s, r in solution.free.items() if _depends(expression, s)}
     idle = {s: sp.S.One for s in solution.free if s in expression.free_symbols and s not in free}
@@ -48,6 +54,34 @@ def verify(system: System, solution: Solution) -> Candidate:
     )
     reason = _failure(checked, candidate.common) or ("" if free else _pole(system, candidate.denominator))
     return Candidate(expression, free, checked, reason)
+
+
+def _verified_numbers(system: System, candidate: Reduced, numbers: Numbers) -> Candidate:
+    """A candidate with numbers for coefficients: a guess of their closed form first, if that keeps all conditions.
+
+    Conditions that algebra keeps whatever the numbers are checked as ever, the others to NUMERICAL.
+    """
+    if numbers.guess is not None:
+        guessed = verify(system, numbers.guess)
+        if not guessed.reason:
+            return guessed
+    checked = tuple(
+        _check_number(system, condition, demand, candidate)
+        if condition in numbers.conditions
+        else _check(system, condition, demand, candidate, candidate.expression)
+        for condition, demand in system.pairs
+    )
+    expression = shown(candidate, system.problem.variable)
+    reason = _failure(checked, candidate.common) or _pole(system, candidate.denominator)
+    return Candidate(expression, {}, checked, reason, numbers.certificate)
+
+
+def _check_number(system: System, condition: AbstractCondition, demand: sp.Expr, candidate: Reduced) -> Checked:
+    try:
+        residual = numerical_residual(system, condition, demand, candidate.expression)
+    except RatfitError:
+        return Checked(condition, demand, False, None)
+    return Checked(condition, demand, bool(residual < NUMERICAL * (1 + _size(demand))), float(residual))
 
 
 def _depends(expression: sp.Expr, symbol: sp.Symbol) -> bool:

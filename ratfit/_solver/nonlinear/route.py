@@ -1,10 +1,122 @@
-"""The nonlinear route."""
+"""The nonlinear route: many starts, each root polished to 50 digits and, where balls can, proved to be near a true one."""
 
 from __future__ import annotations
 
-from ratfit._solver.solution import Solution, Undecided
+from collections.abc import Iterator
+
+import sympy as sp
+
+from ratfit._parse import RatfitError
+from ratfit._solver.nonlinear.assembly import Assembly, assembled
+from ratfit._solver.solution import Numbers, Solution
 from ratfit._system import System
 
+DIGITS = 60
+"""Digits that roots are polished to; fewer are shown."""
 
-def solve_nonlinear(system: System) -> list[Solution]:
-    raise Undecided("not yet")
+SAME = 1e-7
+"""Roots nearer than this, relative to their size, are one."""
+
+
+def solve_nonlinear(system: System, seed: int = 0) -> Iterator[Solution]:
+    """Every solution that many starts find, as soon as it is found: "all found", never "all there are".
+
+    What is linear is solved exactly first. Raises Undecided where a condition has no residual here, or where the
+    conditions are too few to single out coefficients.
+    """
+    assembly = assembled(system)
+    if assembly is None:
+        return
+    residuals = assembly.residuals
+    if residuals.homogeneous and len(residuals.unknowns) == 1:
+        only = {residuals.unknowns[0]: sp.S.One}
+        yield Solution(assembly.numerator.subs(only), assembly.denominator.subs(only))
+        return
+    if parameters := _parameters(assembly):
+        from ratfit._solver.nonlinear.tabulated import tabulated
+
+        yield from tabulated(assembly, parameters, seed)
+        return
+    yield from _single(assembly, seed)
+
+
+def _parameters(assembly: Assembly) -> list[sp.Symbol]:
+    residuals = assembly.residuals
+    parts = [e for part in residuals.parts for e in (part.plain, *(x for m in part.moments for x in _ends(m)))]
+    symbols = set().union(*(e.free_symbols for e in (*parts, assembly.numerator, assembly.denominator)))
+    return sorted(symbols - set(residuals.unknowns) - {residuals.variable}, key=lambda s: s.name)
+
+
+def _ends(moment) -> tuple[sp.Expr, ...]:
+    return moment.integrand, moment.low, moment.high
+
+
+def _single(assembly: Assembly, seed: int) -> Iterator[Solution]:
+    from ratfit._solver.nonlinear.search import search_chunks
+
+    done: list = []
+    for found in search_chunks(assembly.residuals, seed=seed):
+        for root in found:
+            if any(_near(root, other, assembly.residuals.homogeneous) for other in done):
+                continue
+            done.append(root)
+            solution = _polished_solution(assembly, root)
+            if solution is not None:
+                yield solution
+
+
+def _near(a, b, homogeneous: bool) -> bool:
+    """Whether two roots, arrays of one shape, are the same answer."""
+    signs = (1, -1) if homogeneous else (1,)
+    return any(abs(a - sign * b).max() < SAME * (1 + abs(a).max()) for sign in signs)
+
+
+def _polished_solution(assembly: Assembly, root) -> Solution | None:
+    """The solution at a root, or None where it was none: a float's residual can be small where no root is."""
+    from ratfit._solver.nonlinear.krawczyk import certificate
+    from ratfit._solver.nonlinear.polish import polished
+
+    point = polished(assembly.residuals, list(root), DIGITS)
+    if point is None:
+        return None
+    proof = certificate(assembly.residuals, point)
+    numbers = [rational(value) for value in point]
+    found = dict(zip(assembly.residuals.unknowns, numbers, strict=True))
+    words = (
+        f"a true root lies within {proof.radius} of these numbers"
+        if proof.radius is not None
+        else f"not certified: {proof.reason}"
+    )
+    return Solution(
+        assembly.numerator.subs(found),
+        assembly.denominator.subs(found),
+        numbers=Numbers(assembly.numerical, words, _guess(assembly, numbers)),
+    )
+
+
+def rational(midpoint) -> sp.Rational:
+    """The exact decimal of a midpoint, to DIGITS + 10 digits."""
+    return sp.Rational(midpoint.mid().str(DIGITS + 10, radius=False))
+
+
+def _guess(assembly: Assembly, numbers: list[sp.Rational]) -> Solution | None:
+    """A closed form that looks like the numbers, for the caller to verify."""
+    from ratfit._solver.nonlinear.recognise import recognised
+
+    homogeneous = assembly.residuals.homogeneous
+    scale = max(numbers, key=abs) if homogeneous else sp.S.One
+    guesses = recognised([number / scale for number in numbers], _constants(assembly))
+    if guesses is None:
+        return None
+    found = dict(zip(assembly.residuals.unknowns, guesses, strict=True))
+    try:
+        return Solution(assembly.numerator.subs(found), assembly.denominator.subs(found))
+    except RatfitError:
+        return None
+
+
+def _constants(assembly: Assembly) -> list[sp.Expr]:
+    """The irrational numbers that occur in the residuals."""
+    plains = [part.plain for part in assembly.residuals.parts]
+    found = set().union(*(e.atoms(sp.NumberSymbol, sp.Function, sp.Pow) for e in plains))
+    return sorted((c for c in found if c.is_number and c.is_real and not c.is_Rational), key=sp.count_ops)[:3]

@@ -1,0 +1,160 @@
+"""Diagnosis: which conditions clash, which came for free, what would single out a member of a family."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import combinations
+
+import sympy as sp
+
+from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivative, Value, describe
+from ratfit._deadline import TimeLimit
+from ratfit._field import is_zero, numerical_rank
+from ratfit._fit import Candidate, Fit
+from ratfit._jets import same
+from ratfit._parse import RatfitError
+from ratfit._problem import Problem
+from ratfit._rows import rows
+from ratfit._solver import Undecided, pick, solve
+from ratfit._system import System, completed, equations, of_pairs
+from ratfit._verify import verify
+
+CLASH_SECONDS = 10.0
+"""How long the search for a smallest set of clashing conditions may take before it names all of them."""
+
+ADVICE_SECONDS = 3.0
+"""How long the search for advice on an answer may take."""
+
+
+def contradiction(system: System) -> str:
+    """Two conditions that ask for different numbers at the same place, in words."""
+    for (a, demand), (b, other) in combinations(system.pairs, 2):
+        if describe(a) == describe(b) and is_zero(demand - other) is False:
+            return f"{describe(a)} is asked to be {demand} and to be {other}; drop one of them"
+    return ""
+
+
+def explained(fit: Fit, route: str) -> Fit:
+    """The honest no with its reasons: poles, or a smallest set of conditions that no fraction keeps together."""
+    reasons = [f"{c.expression}: {c.reason}" for c in fit.rejected]
+    if any(c.conditions and all(k.holds for k in c.conditions) for c in fit.rejected):
+        reasons.append(
+            "the conditions hold, but the fit has a pole: narrow the parameters' ranges or the domain, "
+            "raise a degree, or add a condition"
+        )
+    elif fit.route == "nonlinear":
+        reasons.append(
+            "many starts found no numbers that keep all conditions, which does not prove that there are none: "
+            "try another --seed, drop a condition or raise a degree"
+        )
+    else:
+        reasons.append(_clash_in_words(fit.problem, route))
+    return replace(fit, reasons=tuple(reasons))
+
+
+def _clash_in_words(problem: Problem, route: str) -> str:
+    clash, proved = _smallest_clash(problem, route)
+    names = "; ".join(describe(c) for c in clash)
+    what = "these conditions clash" if len(clash) < len(problem.conditions) else "all conditions together clash"
+    search = "" if proved else " (the search for fewer was cut short)"
+    return f"{what} in this form: {names}{search}. Drop one of them or raise a degree"
+
+
+def _smallest_clash(problem: Problem, route: str) -> tuple[tuple[AbstractCondition, ...], bool]:
+    """The smallest subset of the conditions that has no fit, and whether the search was finished."""
+    with TimeLimit(CLASH_SECONDS) as limit:
+        for size in range(1, len(problem.conditions)):
+            for subset in combinations(problem.conditions, size):
+                if not _consistent(problem.with_conditions(subset), route):
+                    return subset, True
+    return problem.conditions, not limit.passed
+
+
+def _consistent(problem: Problem, route: str) -> bool:
+    """Whether a subset has a fit; one that a route cannot decide counts as consistent, so that no clash is invented."""
+    try:
+        system = equations(problem)
+        solutions = solve(system, pick(system, "auto" if route == "linear" else route))
+        return any(not verify(system, s).reason for s in solutions)
+    except (RatfitError, Undecided):  # Related is a RatfitError too
+        return True
+
+
+def unattainable(candidate: Candidate) -> str:
+    """The nodes at which a candidate's common factor, cancelled, left a condition unkept, in words."""
+    failed = [c.condition for c in candidate.conditions if c.holds is False]
+    nodes = sorted({str(c.at) for c in failed if isinstance(c, AbstractPointCondition)})
+    return f"unattainable in this form at {', '.join(nodes)}: " if nodes else ""
+
+
+def advice(system: System, fit: Fit) -> tuple[str, ...]:
+    """What a person may like to know of an answer of the linear route: conditions for free, conditions to add."""
+    found: list[str] = []
+    with TimeLimit(ADVICE_SECONDS):
+        if free := _for_free(system):
+            found.append(f"came for free, the other conditions imply it: {'; '.join(map(describe, free))}")
+        if fit.status == "family" and not fit.choice:
+            found += _completing(system, len(fit.free), ", ".join(map(str, fit.free)))
+    return tuple(found)
+
+
+def _for_free(system: System) -> list[AbstractCondition]:
+    """Conditions that follow from the others, the last stated first to go."""
+    whole = completed(system)
+    everything = rows(whole)
+    rank = numerical_rank(everything)
+    if rank == len(everything):
+        return []
+    kept, found = whole.pairs, []
+    for condition, demand in reversed(system.pairs):
+        rest = [pair for pair in kept if pair[0] != condition]
+        if len(rest) < len(kept) and rest and numerical_rank(rows(of_pairs(whole, rest))) == rank:
+            kept = rest
+            found.append(condition)
+    return found[::-1]
+
+
+def _completing(system: System, missing: int, names: str) -> list[str]:
+    """Conditions that would leave nothing free, each a fact of the target that adds to the rank."""
+    whole = completed(system)
+    rank = numerical_rank(rows(whole))
+    chosen: list[str] = []
+    for condition in _further(system):
+        if len(chosen) == missing:
+            break
+        try:
+            pair = (condition, condition.demanded(system.problem.target))
+            more = of_pairs(whole, [*whole.pairs, pair])
+            found = numerical_rank(rows(more))
+        except RatfitError:
+            continue
+        if found == rank + 1:
+            whole, rank = more, found
+            chosen.append(option(condition))
+    if not chosen:
+        return []
+    words = "a further condition" if missing == 1 else f"{missing} further conditions"
+    return [f"{names} free: {words} would single out one, such as {' '.join(chosen)}; or choose, as in --set NAME=VALUE"]
+
+
+def _further(system: System) -> Iterator[AbstractCondition]:
+    """Facts of the target that are not asked for yet, the plainest first."""
+    if system.problem.target is None:
+        return
+    points = [c for c in completed(system).conditions if isinstance(c, AbstractPointCondition)]
+    ends = [end for end in system.problem.support() if not end.is_infinite]
+    for order in range(4):
+        for end in ends:
+            if not any(same(c.at, end) and c.order == order for c in points):
+                yield Derivative(end, order) if order else Value(end)
+    if len(ends) == 2:
+        yield Value(sum(ends, sp.S.Zero) / 2)
+
+
+def option(condition: AbstractCondition) -> str:
+    """A value or derivative of the target as an option of the command line."""
+    assert isinstance(condition, AbstractPointCondition)
+    if condition.order > 1:
+        return f'--derivative "{condition.at};order={condition.order}"'
+    return f"--{'derivative' if condition.order else 'value'} {str(condition.at).replace(' ', '')}"

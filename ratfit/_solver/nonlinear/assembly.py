@@ -1,0 +1,159 @@
+"""From a system to residuals: what is linear is solved exactly first, the rest is what must be brought to zero."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from ratfit._condition import AbstractCondition, AbstractPointCondition, Equation, Integral, Limit
+from ratfit._field import is_zero
+from ratfit._form import Shape
+from ratfit._integral import integral_parts
+from ratfit._jets import same
+from ratfit._parse import RatfitError
+from ratfit._rows import rows
+from ratfit._solver.linear import fractions, null_space
+from ratfit._solver.nonlinear.residuals import Moment, Residual, Residuals
+from ratfit._solver.solution import Undecided
+from ratfit._system import Demanded, System, columns, completed, of_pairs, residuals
+from ratfit._target import sample_values
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """The form's numerator and denominator in the unknowns of `residuals`; its columns keep all linear conditions.
+
+    `numerical` are the conditions that the residuals stand for.
+    """
+
+    numerator: sp.Expr
+    denominator: sp.Expr
+    residuals: Residuals
+    numerical: tuple[AbstractCondition, ...]
+
+
+def assembled(system: System) -> Assembly | None:
+    """The residuals of a system; None where the linear conditions alone clash.
+
+    A fraction is written in a basis of the null space of its linear conditions, on the unit sphere where its scale is
+    free: few unknowns, and no condition that is linear is ever only nearly kept.
+    """
+    if not system.fraction:
+        return _assembly(system, system.shape, system.pairs)
+    linear, rest = split(system)
+    if any(not e.free_symbols & set(system.completion.symbols) and is_zero(e) is False for e in _left(system)):
+        return None
+    vectors = null_space(linear)
+    if not vectors:
+        return None
+    shape = _in_basis(system, vectors)
+    return None if shape is None else _assembly(system, shape, rest)
+
+
+def _left(system: System) -> tuple[sp.Expr, ...]:
+    return system.completion.leftover
+
+
+def split(system: System) -> tuple[System, list[Demanded]]:
+    """The part of a system whose rows are linear as it stands, and what is left, as it was stated."""
+    whole = completed(system)
+    symbols = set(system.completion.symbols)
+    open_nodes = [c.at for c, d in system.completion.facts if d.free_symbols & symbols]
+    stated = set(system.conditions)
+    linear = [(c, d) for c, d in whole.pairs if _is_linear(whole, symbols, c, d)]
+    kept = {c for c, _ in linear}
+    closed = [c for c in system.conditions if isinstance(c, Equation) and not _among(c.at, open_nodes)]
+    rest = [(c, d) for c, d in system.pairs if c in stated - kept - set(closed)]
+    return of_pairs(system, linear), rest
+
+
+def _among(at: sp.Expr, places: list[sp.Expr]) -> bool:
+    return any(same(at, place) for place in places)
+
+
+def _is_linear(whole: System, symbols: set[sp.Symbol], condition: AbstractCondition, demand: sp.Expr) -> bool:
+    """Whether a condition of a completed system has rows without the derivatives that nobody stated."""
+    if isinstance(condition, AbstractPointCondition):
+        return not any(
+            d.free_symbols & symbols
+            for c, d in whole.pairs
+            if isinstance(c, AbstractPointCondition) and c.order <= condition.order and same(c.at, condition.at)
+        )
+    if isinstance(condition, Integral) and not whole.fixed_denominator:
+        return False
+    try:
+        rows(of_pairs(whole, [(condition, demand)]))
+    except RatfitError:
+        return False
+    return True
+
+
+def _in_basis(system: System, vectors: list[list[sp.Expr]]) -> Shape | None:
+    """The form in a basis of its coefficients: c0*v0 + c1*v1 + ..., or with the fixed part 1 where it has one."""
+    pairs, has_fixed = columns(system.shape)
+    if has_fixed:
+        solutions = fractions(system, vectors)
+        if not solutions:
+            return None
+        found = solutions[0]
+        return Shape(found.numerator, found.denominator, system.shape.factor, tuple(found.free), homogeneous=False)
+    unknowns = tuple(sp.Symbol(f"c{i}", real=True) for i in range(len(vectors)))
+    unknowns = unknowns if not _clashes(system, unknowns) else tuple(sp.Dummy(u.name, real=True) for u in unknowns)
+    combined = [sp.Add(*(u * v[k] for u, v in zip(unknowns, vectors, strict=True))) for k in range(len(pairs))]
+    above = sp.Add(*(c * n for c, (n, _) in zip(combined, pairs, strict=True)))
+    below = sp.Add(*(c * d for c, (_, d) in zip(combined, pairs, strict=True)))
+    return Shape(above, below, system.shape.factor, unknowns, homogeneous=True)
+
+
+def _clashes(system: System, unknowns: tuple[sp.Symbol, ...]) -> bool:
+    taken = {system.problem.variable.name, *(p.name for p in system.problem.parameters)}
+    return any(u.name in taken for u in unknowns)
+
+
+def _assembly(system: System, shape: Shape, rest: list[Demanded]) -> Assembly:
+    """Raises Undecided for a condition that no residual is known for, and where residuals are too few."""
+    there = replace(system, shape=shape)
+    parts = [part for condition, demand in rest for part in _parts(there, condition, demand)]
+    if len(shape.unknowns) > len(parts) + shape.homogeneous:
+        raise Undecided(_too_few(len(shape.unknowns) - len(parts) - shape.homogeneous))
+    if shape.homogeneous:
+        parts.append(Residual(sp.Add(*(u**2 for u in shape.unknowns)) - 1))
+    found = Residuals(system.problem.variable, shape.unknowns, tuple(parts), shape.homogeneous)
+    return Assembly(shape.numerator, shape.denominator, found, tuple(c for c, _ in rest))
+
+
+def _too_few(missing: int) -> str:
+    what = "one more condition is" if missing == 1 else f"{missing} more conditions are"
+    return (
+        f"equations that are not linear leave {missing} coefficient{'s' * (missing > 1)} open, and such a family has no "
+        f"formula: {what} needed (a value or a slope at a place, as in --value AT), or a smaller form"
+    )
+
+
+def _parts(system: System, condition: AbstractCondition, demand: sp.Expr) -> list[Residual]:
+    if isinstance(condition, Integral):
+        return [_integral(system, condition, demand)]
+    if isinstance(condition, Limit):
+        raise Undecided(
+            f"a limit of this form (at {condition.place}) is no formula of its unknowns; state values and slopes instead"
+        )
+    return [Residual(residual) for residual in residuals(system, condition, demand)]
+
+
+def _integral(system: System, condition: Integral, demand: sp.Expr) -> Residual:
+    """The moment, in pieces between the kinks of the weight."""
+    inside, rest = integral_parts(system.problem, condition)
+    integrand = condition.weight * system.shape.factor * system.shape.numerator / system.shape.denominator
+    places = [inside[0], *_kinks(condition.weight, system.problem.variable, inside), inside[1]]
+    pieces = zip(places, places[1:], strict=False)
+    return Residual(rest - demand, tuple(Moment(integrand, low, high) for low, high in pieces))
+
+
+def _kinks(weight: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> list[sp.Expr]:
+    """Where the argument of an absolute value in the weight vanishes inside the range, in order."""
+    arguments = [a.args[0] for a in weight.atoms(sp.Abs) if a.args[0].is_polynomial(x) and sp.degree(a.args[0], x) == 1]
+    found = {-sp.Poly(a, x).nth(0) / sp.Poly(a, x).nth(1) for a in arguments}
+    values = sample_values({s for e in (*found, *over) for s in e.free_symbols}, ("3/7",))[0]
+    inside = [k for k in found if over[0].xreplace(values) < k.xreplace(values) < over[1].xreplace(values)]
+    return sorted(inside, key=lambda k: k.xreplace(values))

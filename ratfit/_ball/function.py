@@ -238,11 +238,13 @@ def _algebraic(node: Any) -> Callable[[], arb]:
     polynomial = fmpz_poly([int(c) for c in reversed(node.poly.all_coeffs())])
     place = int(node.index)
 
+    def order(one: arb, other: arb) -> int:
+        return -1 if one < other else 1  # disjoint balls: of any two one is certainly the smaller
+
     def make() -> arb:
         found: Any = polynomial.complex_roots()
         roots = [value.real for value, _ in found if value.imag.is_zero()]
-        # Disjoint balls: one of any two is certainly the smaller.
-        return sorted(roots, key=functools.cmp_to_key(lambda one, other: -1 if one < other else 1))[place]
+        return sorted(roots, key=functools.cmp_to_key(order))[place]
 
     return make
 

@@ -79,8 +79,9 @@ def _certified(system: Enclosure, centre: list[arb], digits: int) -> Certificate
             # A shade less than the power of ten: the radius that is reported is rounded up.
             radii = [(scale * arb(10) ** -exponent * arb(0.999)).mid() for scale in scales]
             box = [arb(value, radius) for value, radius in zip(centre, radii, strict=True)]
-            if _maps_into_itself(system, rows, inverse, step.entries(), box):
-                return _conclusion(system, rows, box, digits)
+            image = _image(system, rows, inverse, step.entries(), box)
+            if all(bool(abs(part) < ball.rad()) for part, ball in zip(image, box, strict=True)):
+                return _conclusion(system, rows, box, image, digits)
     return Certificate(None, _refusal(step.entries()))
 
 
@@ -129,35 +130,34 @@ def _exponents(step: Sequence[arb], scales: Sequence[arb], digits: int) -> Itera
     yield from fitting[5::6]
 
 
-def _maps_into_itself(
+def _image(
     system: Enclosure, rows: Sequence[int], inverse: arb_mat, step: Sequence[arb], box: Sequence[arb]
-) -> bool:
-    """Whether -Y f(c) + (1 - Y J(X)) (X - c) lies inside X - c, all of it in balls: then X holds exactly one root."""
-    slopes = system.jacobian(box)
-    size = len(box)
+) -> list[arb]:
+    """-Y f(c) + (1 - Y J(X)) (X - c): inside X - c it proves one root in X, which then lies in c + image too."""
+    slopes, size = system.jacobian(box), len(box)
     identity = arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
     defect = identity - inverse * arb_mat([slopes[row] for row in rows])
-    radii = [ball.rad() for ball in box]
-    moved = defect * arb_mat([[arb(0, radius)] for radius in radii])
-    images = (part - first for part, first in zip(moved.entries(), step, strict=True))
-    return all(bool(abs(image) < radius) for image, radius in zip(images, radii, strict=True))
+    moved = defect * arb_mat([[arb(0, ball.rad())] for ball in box])
+    return [part - first for part, first in zip(moved.entries(), step, strict=True)]
 
 
-def _conclusion(system: Enclosure, rows: Sequence[int], box: Sequence[arb], digits: int) -> Certificate:
+def _conclusion(
+    system: Enclosure, rows: Sequence[int], box: Sequence[arb], image: Sequence[arb], digits: int
+) -> Certificate:
     radius = _written(max((ball.rad() for ball in box), key=float))
     others = [i for i in range(len(system.terms)) if i not in rows]
     proof = f"Krawczyk test: exactly one root in a box of radius {radius}"
     if not others:
         return Certificate(radius, proof)
     with flint.ctx.workprec(bits(digits + GUARD_DIGITS)):
-        balls = system.values(box)
+        balls = system.values([ball.mid() + part for ball, part in zip(box, image, strict=True)])
     names = ", ".join(str(i + 1) for i in others)
     if not all(balls[i].contains(0) for i in others):  # a ball that is not finite contains 0
         return Certificate(None, f"no common root of the residuals within {radius}: not all of {names} vanish there")
     widest = _written(max((abs(balls[i]).upper() for i in others), key=float))
     kept = ", ".join(str(row + 1) for row in rows)
     return Certificate(
-        radius, f"{proof} of the residuals {kept}; not proved: {names}, which are at most {widest} in this box"
+        radius, f"{proof} of the residuals {kept}; not proved: {names}, which are at most {widest} at this root"
     )
 
 

@@ -36,7 +36,7 @@ def polished(residuals: Residuals, start: Sequence[float], digits: int = 60) -> 
 
     - `residuals`: without parameters.
     - `start`: the root in floats.
-    - `digits`: the residuals fall below 10**-(digits - 10), relative to the size of their terms.
+    - `digits`: the residuals fall below 10**-(digits - 10), relative to the size of their terms and slopes.
 
     **Returns:** exact midpoints, which prove nothing by themselves; None where the method does not converge, as at a
     multiple root, leaves the neighbourhood of the start, or has fewer residuals than unknowns.
@@ -81,7 +81,7 @@ def _newton(system: Enclosure, origin: Point, digits: int) -> Point | None:
                 slopes = system.jacobian(point)
         with flint.ctx.workprec(bits(working)):
             step = _step(slopes, found)
-        if working == most and _vanish(found, sizes, digits - 10):
+        if working == most and _vanish(found, sizes, slopes, digits - 10):
             return point if step is None else _moved(point, step, origin, digits)
         moved = None if step is None else _moved(point, step, origin, digits)
         if step is None or moved is None:
@@ -113,9 +113,11 @@ def _moved(point: Point, step: Point, origin: Point, digits: int) -> Point | Non
     return moved if near else None
 
 
-def _vanish(found: Point, sizes: Point, digits: int) -> bool:
+def _vanish(found: Point, sizes: Point, slopes: list[list[arb]], digits: int) -> bool:
+    """Against the terms, and the slopes: at 0 as a root of b + b**2 all terms vanish with the residual."""
     limit = arb(10) ** -digits
-    return all(bool(abs(value) <= limit * size.mid()) for value, size in zip(found, sizes, strict=True))
+    scales = [sum((abs(slope.mid()) for slope in row), size.mid()) for size, row in zip(sizes, slopes, strict=True)]
+    return all(bool(abs(value) <= limit * scale) for value, scale in zip(found, scales, strict=True))
 
 
 def _right_digits(step: Point, point: Point) -> float:
@@ -155,7 +157,8 @@ def _chord(
             return None
         point = [_to_mpf(value, digits + 2 * GUARD_DIGITS) for value in moved]
         limit = mpmath.mpf(10) ** -(digits - 10)
-        if all(abs(value) <= limit * size for value, size in zip(found, sizes, strict=True)):
+        scales = [size + mpmath.fsum(map(abs, slopes[i, :])) for i, size in enumerate(sizes)]
+        if all(abs(value) <= limit * scale for value, scale in zip(found, scales, strict=True)):
             return moved
     return None
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ratfit._parse import RESERVED, RatfitError
 from ratfit._problem import Problem
 from ratfit._problem_file import problem_of
+from ratfit._target import Target
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,13 @@ def problem_of_words(target: str, words: Words) -> Problem:
         ],
     }
     return problem_of(tables, "expression")
+
+
+def target_of_words(target: str, words: Words) -> Target:
+    """The target alone: a problem wants a form and a condition, and a constant with its own integral is always one."""
+    problem = problem_of_words(target, replace(words, form="0", integral=("weight=1",)))
+    assert problem.target is not None
+    return problem.target
 
 
 def _variable(target: str, declared: set[str]) -> str:

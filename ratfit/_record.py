@@ -108,19 +108,24 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
     **Fails** with `RatfitError` for a folder that is missing or may not be written to, and for a path that is a folder.
     """
+    write_bytes(path, text.encode())
+
+
+def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
+    """The same for a file that is no text, a picture say."""
     with _explained(path):
         file = Path(path)
         if file.exists() and not file.is_file():
-            file.write_text(text, encoding="utf-8")  # /dev/stdout, say: nothing may be moved into its place
+            file.write_bytes(data)  # /dev/stdout, say: nothing may be moved into its place
         else:
-            _replace(file.resolve(), text)  # of a link its target is replaced, not the link
+            _replace(file.resolve(), data)  # of a link its target is replaced, not the link
 
 
-def _replace(path: Path, text: str) -> None:
+def _replace(path: Path, data: bytes) -> None:
     beside = path.with_name(f".{secrets.token_hex(8)}.tmp")
     try:
-        with beside.open("x", encoding="utf-8") as file:
-            file.write(text)
+        with beside.open("xb") as file:
+            file.write(data)
             file.flush()
             os.fsync(file.fileno())
         beside.replace(path)

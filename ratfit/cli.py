@@ -14,14 +14,18 @@ import click
 import ratfit
 from ratfit._derive import derive as derive_fit
 from ratfit._fit import Fit
-from ratfit._inline import Words, problem_of_words, settings_of
+from ratfit._inline import Words, problem_of_words, settings_of, target_of_words
 from ratfit._parse import RatfitError, nearest
 from ratfit._problem import Problem
+from ratfit._target import Target
 from ratfit.gallery import Card, card, find_problem, is_card, is_known
 from ratfit.report.progress import waiting
 
 EXPRESSION_HELP = """PROBLEM is looked up as a gallery name (`ratfit gallery`), then as a problem file
 (it ends in .toml or exists), then read as an expression that --on, --form and conditions complete."""
+
+TARGET_HELP = """TARGET is looked up as a gallery name (`ratfit gallery`), then as a problem file (it ends in .toml or
+exists), then read as an expression that --on completes."""
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -58,6 +62,7 @@ def cli(context: click.Context) -> None:
     ratfit derive eq19                one of them
     ratfit derive "sin(x)" --on 0 pi/2 --form 2/1 --value 0 --derivative 0 --value pi/2 --derivative pi/2
     ratfit bench eq12                 its error and its speed
+    ratfit study "tanh(x)" --on 0 oo  what is exact about a function, as conditions for derive
     ratfit gallery                    every problem that comes with ratfit
     """
     if context.invoked_subcommand is None:
@@ -140,7 +145,7 @@ def _read(problem: tuple[str, ...], degree: int | None, words: dict[str, Any]) -
 
 def _one_word(problem: tuple[str, ...]) -> str:
     """The one problem among the words; RatfitError for none, for several and for misspelt options."""
-    options = [o for p in derive.params + bench.params for o in p.opts if o.startswith("--")]
+    options = [o for p in derive.params + bench.params + study.params for o in p.opts if o.startswith("--")]
     for word in problem:
         if word.startswith("--") and len(word) > 2:
             raise RatfitError(
@@ -221,6 +226,78 @@ def _write(text: str, out: str | None) -> None:
     from ratfit._record import write_text
 
     write_text(Path(out), text + "\n")
+
+
+PICTURES = ("svg", "pdf", "png")
+
+
+@cli.command(short_help="Say what is exact about a function.", context_settings=WORDS, epilog=TARGET_HELP)
+@click.argument("target", nargs=-1, type=click.UNPROCESSED)
+@click.option("--on", nargs=2, metavar="LOW HIGH", help="The domain of an expression; oo and -oo are ends too.")
+@click.option("--variable", metavar="NAME", help="The variable, where the expression leaves it open.")
+@click.option("--parameter", multiple=True, metavar="m=LOW:HIGH", help="A symbol that stays in the answer.")
+@click.option("--let", multiple=True, metavar="h=EXPR", help="An abbreviation.")
+@click.option("--plot", metavar="FILE", help="A picture with the conditions marked: .svg, .pdf or .png.")
+@click.option("--format", "format_", default="text", type=click.Choice(["text", "json", "toml"]), show_default=True)
+@click.option("--out", type=click.Path(), metavar="FILE", help="Write the result there.")
+@click.option("--timeout", type=float, default=30.0, show_default=True, metavar="SECONDS", help="Stop after that.")
+def study(target: tuple[str, ...], **options: Any) -> int:
+    """Say what is exact about TARGET, and print every fact as a kernel condition that `ratfit derive` takes.
+
+    \b
+    ratfit study eq19
+    ratfit study "sin(x)" --on 0 pi/2
+    ratfit study "tanh(x)" --on 0 oo --plot tanh.svg
+    ratfit study "exp(-k*x)" --on 0 oo --parameter k=1/2:2 --format toml > my.toml
+    """
+    from ratfit._study import study as study_target
+    from ratfit.report.study import study_json, study_text, study_toml
+
+    picture = _picture_format(options["plot"])
+    studied, seconds = _read_target(target, options), _positive(options["timeout"])
+    with waiting(f"studying {studied.expression}, for at most {seconds:g} s (Ctrl-C stops)"):
+        found = study_target(studied, timeout=seconds)
+    if picture:
+        _write_picture(found, options["plot"], picture)
+    written = {"text": study_text, "json": study_json, "toml": study_toml}[options["format_"]](found)
+    _write(written.rstrip("\n"), options["out"])
+    return 0
+
+
+def _read_target(words: tuple[str, ...], options: dict[str, Any]) -> Target:
+    """The target that the words of `study` name: of a card, of a file, or an expression with its domain."""
+    from ratfit._study.study import target_of
+
+    text = _one_word(words)
+    stated = Words(**{k: options[k] for k in ("on", "variable", "parameter", "let")})
+    if is_known(text) and stated.given():
+        raise RatfitError(f"--{stated.given()[0]} completes an expression; {text} is a whole problem, leave it out")
+    if is_known(text):
+        return target_of(find_problem(text))
+    if not stated.given() and text.replace("-", "").replace("_", "").isalnum():
+        return target_of(card(text).problem)  # a lone word that is no name: the error offers the nearest names
+    return target_of_words(text, stated)
+
+
+def _picture_format(file: str | None) -> str:
+    """The format that the suffix of a picture asks for, before any work is done for it."""
+    if file is None:
+        return ""
+    suffix = Path(file).suffix.lower().removeprefix(".")
+    if suffix not in PICTURES:
+        raise RatfitError(f"--plot {file}: name the picture something.svg, something.pdf or something.png")
+    return suffix
+
+
+def _write_picture(found: Any, file: str, format_: str) -> None:
+    from io import BytesIO
+
+    from ratfit._record import write_bytes
+    from ratfit.plot import plot_study
+
+    drawn = BytesIO()
+    plot_study(found).figure.savefig(drawn, format=format_, dpi=200)
+    write_bytes(file, drawn.getvalue())
 
 
 @cli.command(short_help="List the problems of the gallery.")

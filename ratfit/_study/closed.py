@@ -150,8 +150,14 @@ def inside(place: sp.Expr, target: Target) -> bool:
 
 
 def shorter(expression: sp.Expr, clock: Clock) -> sp.Expr:
-    """The expression simplified, where that makes it shorter to write."""
+    """The expression simplified, where that makes it shorter to write and nests nothing deeper."""
     if expression.is_Atom or expression.is_Rational:
         return expression
-    choices = [expression, clock.attempt(lambda: sp.simplify(expression), seconds=0.5) or expression]
-    return min(choices, key=lambda e: len(str(e)))
+    simple = clock.attempt(lambda: sp.simplify(expression), seconds=0.5)
+    if simple is None or len(str(simple)) >= len(str(expression)) or _depth(simple) > _depth(expression):
+        return expression
+    return simple
+
+
+def _depth(expression: sp.Basic) -> int:
+    return 1 + max((_depth(part) for part in expression.args), default=0)

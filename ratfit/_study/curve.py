@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import product
 
 import mpmath
 import sympy as sp
 
-from ratfit._poles import endpoint, function_of
+from ratfit._parse import RatfitError
+from ratfit._poles import endpoint, multiprecise
 from ratfit._target import Target, at_values, sample_values
 
 DIGITS = 50
@@ -42,7 +44,7 @@ def differentiated(expression: sp.Expr, x: sp.Symbol, order: int) -> sp.Expr:
 
 def numbers_of(expression: sp.Expr, x: sp.Symbol) -> Number:
     """The expression as a function of x at mpmath's working precision; None where it is no finite real number."""
-    function = function_of(expression, x, {})
+    function = sp.lambdify([x], expression, "mpmath", cse=True)
 
     def number(place: mpmath.mpf) -> mpmath.mpf | None:
         try:
@@ -86,8 +88,19 @@ class Curve:
         return at_values(self.middle)
 
     def samples(self) -> list[dict[sp.Symbol, sp.Expr]]:
-        """Values of the parameters, spread over their ranges."""
+        """Values of the parameters inside their ranges."""
         return sample_values(set(self.parameters), ("1/2", "1/9", "8/9"))
+
+    def all_samples(self) -> list[dict[sp.Symbol, sp.Expr]]:
+        """The same and the ends of the ranges, where exceptions like to lie: the slope of t**n at n = 1."""
+        return (
+            self.samples()
+            + [
+                dict(zip(self.parameters, ends, strict=True))
+                for ends in product(*((getattr(s, "low", 0), getattr(s, "high", 1)) for s in self.parameters))
+                if all(sp.S(end).is_finite for end in ends)
+            ][:4]
+        )
 
     def expression(self, order: int) -> sp.Expr:
         """The derivative of that order, with the parameters as symbols."""
@@ -136,19 +149,27 @@ def _placed(share: mpmath.mpf, low: mpmath.mpf, high: mpmath.mpf) -> mpmath.mpf:
     return low + share * (high - low)
 
 
-def growth(number: Number, place: mpmath.mpf, side: int) -> sp.Rational | None:
+def exponent_of(number: Number, place: mpmath.mpf, side: int) -> mpmath.mpf | None:
     """The exponent p of |number| ~ C*distance**p on the way to a place; None where it follows no power.
 
     At an infinite place the distance is that from 0, so that x**2 has the exponent 2 there.
     """
     far = mpmath.isinf(place)
     with mpmath.workdps(3 * DIGITS):
-        steps = [mpmath.mpf(10) ** (k if far else -k) for k in ((15, 30) if far else (10, 20))]
+        steps = [mpmath.mpf(10) ** (k if far else -k) for k in (10, 20, 30)]
         values = [number(side * step if far else place + side * step) for step in steps]
         if any(value is None or value == 0 for value in values):
             return None
-        exponent = mpmath.log(abs(values[1] / values[0])) / mpmath.log(steps[1] / steps[0])
-        return simple_fraction(exponent, 6, mpmath.mpf("1e-4"))
+        first, second = (
+            mpmath.log(abs(values[k + 1] / values[k])) / mpmath.log(steps[k + 1] / steps[k]) for k in (0, 1)
+        )
+        return second if abs(first - second) < mpmath.mpf("1e-6") * (1 + abs(second)) else None
+
+
+def growth(number: Number, place: mpmath.mpf, side: int) -> sp.Rational | None:
+    """The same exponent as a fraction, None where it is no simple one."""
+    exponent = exponent_of(number, place, side)
+    return None if exponent is None else simple_fraction(exponent, 6, mpmath.mpf("1e-6"))
 
 
 def simple_fraction(number: mpmath.mpf, largest: int, tolerance: mpmath.mpf) -> sp.Rational | None:
@@ -174,6 +195,20 @@ def tends_to(number: Number, place: mpmath.mpf, side: int, value: mpmath.mpf) ->
         if off <= mpmath.mpf("1e-12") * (1 + abs(value)):
             return True
         return found[0] is not None and off < 0.5 * abs(found[0] - value)
+
+
+def agrees(curve: Curve, expression: sp.Expr, place: sp.Expr, side: int, value: sp.Expr) -> bool:
+    """Whether an expression tends to a value at a place by numbers, for three values of each parameter."""
+    for values in curve.samples():
+        number = numbers_of(expression.xreplace(values), curve.x)
+        with mpmath.workdps(3 * DIGITS):
+            try:
+                at, claimed = endpoint(place.xreplace(values)), multiprecise(value.xreplace(values))
+            except RatfitError:  # it is no real number there
+                return False
+            if not tends_to(number, abs(at) if mpmath.isinf(at) else at, side, claimed):
+                return False
+    return True
 
 
 def decimal(number: mpmath.mpf, digits: int = SHOWN) -> sp.Rational:

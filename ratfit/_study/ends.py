@@ -8,10 +8,10 @@ import mpmath
 import sympy as sp
 
 from ratfit._condition import Derivative, Value
-from ratfit._poles import endpoint, multiprecise
+from ratfit._poles import endpoint
 from ratfit._study.clock import Clock
 from ratfit._study.closed import shorter
-from ratfit._study.curve import DIGITS, SHOWN, Curve, decimal, growth, numbers_of, tends_to
+from ratfit._study.curve import DIGITS, SHOWN, Curve, agrees, decimal, exponent_of, growth, numbers_of
 from ratfit._study.fact import SYMBOLIC, Fact
 
 KINDS = ("value", "slope", "curvature")
@@ -28,8 +28,10 @@ def end_facts(curve: Curve, clock: Clock) -> Iterator[Fact]:
 def _at_end(curve: Curve, clock: Clock, end: sp.Expr, side: int) -> Iterator[Fact]:
     for order in range(3):
         where = f"{MARKS[order]} at {curve.x} = {end}"
-        value = clock.attempt(lambda k=order: curve.target.derivative(end, k), where, 1.5)  # type: ignore[misc]
-        if value is not None and confirmed(curve, order, end, side, value):
+        value = None
+        if not _is_infinite(curve, side, order):  # sympy would look long for a limit that is not there
+            value = clock.attempt(lambda k=order: curve.target.derivative(end, k), where, 1.5)  # type: ignore[misc]
+        if value is not None and agrees(curve, curve.expression(order), end, side, value):
             value = shorter(value, clock)
             text = f"{MARKS[order]}({end}) = {value}"
             yield Fact(KINDS[order], text, condition_at(end, order), SYMBOLIC, end, value)
@@ -48,19 +50,15 @@ def condition_at(place: sp.Expr, order: int, equals: sp.Expr | None = None) -> V
     return Derivative(place, order, equals) if order else Value(place, equals)
 
 
-def confirmed(curve: Curve, order: int, place: sp.Expr, side: int, value: sp.Expr) -> bool:
-    """Whether numbers on the way to the place tend to the value, for three values of each parameter."""
-    for values in curve.samples():
-        number = numbers_of(curve.expression(order).xreplace(values), curve.x)
-        with mpmath.workdps(3 * DIGITS):
-            if not tends_to(number, endpoint(place.xreplace(values)), side, multiprecise(value.xreplace(values))):
-                return False
-    return True
-
-
 def _by_numbers(curve: Curve, end: sp.Expr, side: int, order: int) -> Fact | None:
     """What numbers say about an end where sympy says nothing: infinite with its growth, or a value to some digits."""
     number, place = curve.number(order), curve.ends[0 if side == 1 else 1]
+    samples = curve.all_samples() if curve.middle else curve.samples()
+    if all(_vanishes(curve, values, side, order) for values in samples):
+        settings = f" at {len(samples)} values of the parameters" if curve.middle else ""
+        condition = condition_at(end, order, sp.S.Zero)
+        found = f"numeric, falls off like a power{settings}"
+        return Fact(KINDS[order], f"{MARKS[order]}({end}) = 0", condition, found, end, sp.S.Zero)
     with mpmath.workdps(3 * DIGITS):
         near, mid, far = (number(place + side * mpmath.mpf(10) ** -k) for k in (40, 30, 10))
     if near is None or mid is None or far is None:
@@ -71,10 +69,24 @@ def _by_numbers(curve: Curve, end: sp.Expr, side: int, order: int) -> Fact | Non
     if off > mpmath.mpf("1e-8") * (1 + abs(near)):
         return None
     digits = SHOWN if off == 0 else min(SHOWN, int(-mpmath.log10(off / (1 + abs(near)))))
+    near = mpmath.mpf(0) if abs(near) < mpmath.mpf(10) ** -digits else near
     value = decimal(near, digits)
     condition = None if curve.middle else condition_at(end, order, value)
     text = f"{MARKS[order]}({end}) = {mpmath.nstr(near, 12)}{curve.label}"
     return Fact(KINDS[order], text, condition, f"numeric to {digits} digits", end, value)
+
+
+def _vanishes(curve: Curve, values: dict[sp.Symbol, sp.Expr], side: int, order: int) -> bool:
+    number = numbers_of(curve.expression(order).xreplace(values), curve.x)
+    with mpmath.workdps(3 * DIGITS):
+        place = endpoint(curve.target.domain[0 if side == 1 else 1].xreplace(values))
+        exponent = exponent_of(number, place, side)
+        return exponent is not None and exponent > mpmath.mpf("1e-3")
+
+
+def _is_infinite(curve: Curve, side: int, order: int) -> bool:
+    exponent = exponent_of(curve.number(order), curve.ends[0 if side == 1 else 1], side)
+    return exponent is not None and exponent < mpmath.mpf("-1e-3")
 
 
 def _infinite(curve: Curve, end: sp.Expr, side: int, order: int, positive: bool) -> Fact:
@@ -82,6 +94,6 @@ def _infinite(curve: Curve, end: sp.Expr, side: int, order: int, positive: bool)
     distance = curve.x if end == 0 else curve.x - end if side == 1 else end - curve.x
     text = f"{MARKS[order]}({end}{'+' if side == 1 else '-'}) = {'' if positive else '-'}oo"
     if exponent is not None and exponent < 0:
-        what = MARKS[0] if order == 0 or exponent + order <= 0 else f"f - f({end})"
-        text += f", {what if order else 'f'} grows like {sp.Pow(distance, exponent + order)}"
+        what = f"f - f({end})" if order and exponent + order > 0 else "f"
+        text += f", {what} behaves like {sp.Pow(distance, exponent + order)}"
     return Fact(KINDS[order], text + curve.label, None, "numeric, the growth on the way to the end", end)

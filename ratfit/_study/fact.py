@@ -19,7 +19,7 @@ class Fact:
     """One thing that is true of the target.
 
     `kind` is a word ("value", "zero", "maximum", "pole", "parity", ...); `text` says the fact; `condition` is the
-    kernel condition that keeps it, None where there is none; `found` is "symbolic", or says what stands behind a number:
+    kernel condition that keeps it, None where there is none; `found` is "symbolic", or says what stands behind it:
     "numeric to 30 digits", "no change of sign of f' seen at 811 points". `place` is where it holds and `value` the
     number it states, None where there is no one such; `form` is a key and value of a form that keeps it by itself, as
     in ("parity", "odd").

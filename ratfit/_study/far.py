@@ -8,10 +8,9 @@ import mpmath
 import sympy as sp
 
 from ratfit._condition import Limit
-from ratfit._poles import multiprecise
 from ratfit._study.clock import Clock
 from ratfit._study.closed import shorter
-from ratfit._study.curve import DIGITS, Curve, growth, numbers_of, tends_to
+from ratfit._study.curve import DIGITS, Curve, agrees, growth, numbers_of
 from ratfit._study.fact import SYMBOLIC, Fact
 
 SECONDS = 1.5
@@ -63,12 +62,9 @@ def _limit(curve: Curve, clock: Clock, place: sp.Expr, side: int, scale: sp.Expr
     value = clock.attempt(lambda: curve.target.limit(place, scale, minus), what, SECONDS)
     if value is None or value.has(sp.I) or value.free_symbols - set(curve.parameters):
         return None
-    far = mpmath.mpf("inf")
-    for values in curve.samples():
-        number = numbers_of(((curve.target.expression - minus) * scale).xreplace(values), curve.x)
-        with mpmath.workdps(3 * DIGITS):
-            if not tends_to(number, far, side, multiprecise(value.xreplace(values))):
-                return None
+    function = (curve.target.expression - minus) * scale
+    if not agrees(curve, function, place, side, value):
+        return None
     return shorter(value, clock)
 
 

@@ -10,8 +10,8 @@ import sympy as sp
 from ratfit._study.clock import Clock
 from ratfit._study.closed import closed_kink, closed_place, inside, shorter
 from ratfit._study.crossings import WORK, Scans
-from ratfit._study.curve import SHOWN, Curve, decimal, growth
-from ratfit._study.ends import condition_at, confirmed
+from ratfit._study.curve import SHOWN, Curve, agrees, decimal, growth
+from ratfit._study.ends import condition_at
 from ratfit._study.fact import SYMBOLIC, Fact
 
 NUMERIC = f"numeric to {SHOWN} digits"
@@ -91,7 +91,7 @@ def _height(
     """The value (or slope) at a place, in closed form where place and value have one."""
     if closed is not None:
         value = clock.attempt(lambda: curve.target.derivative(closed, order))
-        if value is not None and confirmed(curve, order, closed, 1, value):
+        if value is not None and agrees(curve, curve.expression(order), closed, 1, value):
             value = shorter(value, clock)
             condition = condition_at(closed, order) if inside(closed, curve.target) else None
             return Fact(kind, text.format(closed, value), condition, SYMBOLIC, closed, value)

@@ -9,8 +9,8 @@ import sympy as sp
 
 from ratfit._condition import Limit
 from ratfit._study.closed import closed_place, shorter
-from ratfit._study.crossings import WORK, Scans
-from ratfit._study.curve import SHOWN, Curve, decimal, growth
+from ratfit._study.crossings import Scans
+from ratfit._study.curve import SHOWN, Curve, agrees, decimal, growth
 from ratfit._study.fact import SYMBOLIC, Fact
 
 
@@ -52,23 +52,10 @@ def _pole(scans: Scans, place: mpmath.mpf, closed: sp.Expr | None, order: sp.Rat
     scale = distance**order
     what = f"the coefficient of the pole at {closed}"
     coefficient = clock.attempt(lambda: curve.target.limit(closed, scale, sp.S.Zero), what, 1.5)
-    if coefficient is None or not _confirmed(curve, closed, scale, coefficient):
+    side = -1 if closed == curve.target.domain[1] else 1
+    if coefficient is None or not agrees(curve, curve.target.expression * scale, closed, side, coefficient):
         return Fact(kind, f"{kind} of order {order} at {closed}{curve.label}", None, "numeric, its growth", closed)
     coefficient = shorter(coefficient, clock)
     condition = Limit(closed, scale=scale, equals=coefficient)
     text = f"{kind} of order {order} at {closed}: {condition.what} -> {coefficient}"
     return Fact(kind, text, condition, SYMBOLIC, closed, coefficient)
-
-
-def _confirmed(curve: Curve, closed: sp.Expr, scale: sp.Expr, coefficient: sp.Expr) -> bool:
-    from ratfit._poles import endpoint, multiprecise
-    from ratfit._study.curve import numbers_of, tends_to
-
-    side = -1 if closed == curve.target.domain[1] else 1
-    for values in curve.samples():
-        number = numbers_of((curve.target.expression * scale).xreplace(values), curve.x)
-        with mpmath.workdps(3 * WORK):
-            place, value = endpoint(closed.xreplace(values)), multiprecise(coefficient.xreplace(values))
-            if not tends_to(number, place, side, value):
-                return False
-    return True

@@ -98,7 +98,7 @@ def _in_pieces(curve: Curve, order: int, pieces: list[Piece], points: int) -> Fa
 def has_sign(curve: Curve, order: int, sign: int, clock: Clock) -> bool:
     """Whether a derivative has this sign all over the open domain, by Sturm's count or sympy's assumptions."""
     derivative = curve.expression(order)
-    if (flat := clock.attempt(lambda: sp.factor(sp.together(derivative)))) is None:
+    if (flat := clock.attempt(lambda: sp.factor(sp.together(derivative)), seconds=0.5)) is None:
         return False
     if not curve.parameters and clock.attempt(lambda: _no_real_root(flat, curve)):
         return True

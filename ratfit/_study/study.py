@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from ratfit._deadline import TimeLimit
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
-from ratfit._study.clock import Clock
+from ratfit._problem_file import condition_of
+from ratfit._problem_text import condition_table
+from ratfit._study.clock import FAILURES, Clock
 from ratfit._study.crossings import MOST, Scans
 from ratfit._study.curve import Curve
 from ratfit._study.ends import end_facts
@@ -42,7 +45,7 @@ def study(target: Target | str | Path, *, timeout: float = 30.0) -> Study:
     curve = Curve(target)
     facts: list[Fact] = []
     for what, part in _parts(curve, clock):
-        _collect(facts, what, part, clock)
+        _collect(facts, what, part, curve, clock)
     notes = [*_first_notes(curve, facts), *dict.fromkeys(clock.notes)]
     known = Study(target, tuple(facts), tuple(notes))
     return Study(target, known.facts, known.notes, suggested(known, (1 - FIRST_SHARE) * timeout + clock.left()))
@@ -83,13 +86,28 @@ def _parts(curve: Curve, clock: Clock) -> list[tuple[str, Part]]:
     ]
 
 
-def _collect(facts: list[Fact], what: str, part: Part, clock: Clock) -> None:
+def _collect(facts: list[Fact], what: str, part: Part, curve: Curve, clock: Clock) -> None:
     """Adds the facts of a part as they come: what was found before its time ran out is kept."""
     with TimeLimit(clock.left() / 2) as limit:
-        for fact in part():
-            facts.append(fact)
+        try:
+            for fact in part():
+                facts.append(_readable(fact, curve))
+        except FAILURES as error:
+            clock.notes.append(f"{what}: cut short by what sympy could not do ({type(error).__name__})")
     if limit.passed:
         clock.notes.append(f"{what}: cut short, the time was up")
+
+
+def _readable(fact: Fact, curve: Curve) -> Fact:
+    """The fact without its condition where that cannot be written in ratfit's grammar, as LambertW cannot."""
+    if fact.condition is None:
+        return fact
+    names = {symbol.name: symbol for symbol in (curve.x, *curve.parameters)}
+    try:
+        condition_of(condition_table(fact.condition), names, fact.kind)
+    except RatfitError:
+        return replace(fact, condition=None)
+    return fact
 
 
 def _first_notes(curve: Curve, facts: list[Fact]) -> list[str]:

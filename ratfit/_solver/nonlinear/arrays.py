@@ -44,6 +44,11 @@ class Values:
     def take(self, which: np.ndarray) -> Values:
         return Values(self.value[which], self.jacobian[which], self.size[which], self.broken[which])
 
+    def put(self, places: np.ndarray, others: Values) -> None:
+        """Overwrites these places."""
+        self.value[places], self.jacobian[places] = others.value, others.jacobian
+        self.size[places], self.broken[places] = others.size, others.broken
+
     def where(self, chosen: np.ndarray, others: Values) -> Values:
         """These values where `chosen` (places,), else the others."""
         return Values(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 from collections.abc import Iterator, Sequence
@@ -11,7 +12,7 @@ import numpy as np
 
 from ratfit._parse import RatfitError
 from ratfit._solver.nonlinear.arrays import Prepared, System
-from ratfit._solver.nonlinear.newton import FLOOR, full_step, newton
+from ratfit._solver.nonlinear.newton import full_step, newton
 from ratfit._solver.nonlinear.quadrature import Rule
 from ratfit._solver.nonlinear.residuals import Residuals
 from ratfit._solver.nonlinear.search import Settled, is_same, search_system, settle
@@ -20,11 +21,17 @@ from ratfit._target import Parameter
 NODES = {1: 17, 2: 9}
 """Grid nodes of each parameter, by how many parameters there are."""
 
-SHORTEST = 1 / 256
+SHORTEST = 2.0**-14
 """Of the way between two nodes: where a root cannot be followed by steps of this size, its branch ends."""
 
 CONTRACTION = 0.25
 """Newton's second step over its first, above which a predictor was too far off to be sure of its branch."""
+
+NUDGE = 1e-6
+"""The share of the way over which a residual's change with the parameters is taken."""
+
+CERTAIN = 1e-9
+"""A first step this short, relative to the root, is all rounding: it need not contract."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +55,7 @@ def roots_on_grid(
     """All branches of roots over a tensor grid of Chebyshev points of the first kind in the parameters' ranges.
 
     Many starts find the roots at the middle node, and at two more for branches that do not reach the middle. Each
-    is followed from node to node: Newton's first step is the predictor, and a step in the parameters is halved where
+    is followed from node to node: along its tangent; a step in the parameters is halved where
     Newton's steps do not contract, so that a root does not jump to another branch.
 
     **Arguments:**
@@ -150,15 +157,20 @@ def _advance(
     tracks: Sequence[_Track],
     pairs: Sequence[tuple[int, int, int]],
 ) -> None:
-    """Follows roots to neighbours, with steps that are halved where they are too long."""
+    """Follows roots to neighbours along their tangents, with steps that are halved where they are too long."""
     first, last = (values[[pair[place] for pair in pairs]] for place in (1, 2))
     here = np.stack([tracks[branch].coefficients[node] for branch, node, _ in pairs])
     way, length = np.zeros(len(pairs)), np.ones(len(pairs))
+
+    def prepared(active: np.ndarray, further: np.ndarray | float) -> Prepared:
+        share = (way[active] + further)[:, None]
+        return system.prepare(first[active] + share * (last - first)[active], rules)
+
     while (active := np.flatnonzero((way < 1) & (length >= SHORTEST))).size:
         length[active] = np.minimum(length[active], 1 - way[active])
-        share = (way + length)[active, None]
-        prepared = system.prepare(first[active] + share * (last - first)[active], rules)
-        there, good = _corrected(system, here[active], prepared)
+        tangent = _tangent(system, here[active], prepared(active, 0.0), prepared(active, NUDGE))
+        predicted = here[active] + length[active, None] * tangent
+        there, good = _corrected(system, predicted, prepared(active, length[active]))
         here[active[good]] = there[good]
         way[active[good]] += length[active[good]]
         length[active] *= np.where(good, 2.0, 0.5)
@@ -167,15 +179,21 @@ def _advance(
             tracks[branch].coefficients[neighbour], tracks[branch].done[neighbour] = end, True
 
 
+def _tangent(system: System, roots: np.ndarray, here: Prepared, nudged: Prepared) -> np.ndarray:
+    """The change of roots (places, unknowns) over the whole way to the neighbour, were it straight."""
+    values, moved = system.at(roots, here), system.at(roots, nudged)
+    return full_step(dataclasses.replace(values, value=(moved.value - values.value) / NUDGE))
+
+
 def _corrected(system: System, starts: np.ndarray, prepared: Prepared) -> tuple[np.ndarray, np.ndarray]:
-    """Newton's method from the roots at other parameters (places, unknowns), and where its steps contracted."""
+    """Newton's method from predicted roots (places, unknowns), and where it contracted at once."""
     first = full_step(system.at(starts, prepared))
-    moved = system.at(starts + first, prepared)
+    second = full_step(system.at(starts + first, prepared))
     ends, good = newton(system, starts + first, prepared)
-    lengths = [np.linalg.norm(step, axis=1) for step in (first, full_step(moved), ends - starts)]
-    near = FLOOR * np.linalg.norm(ends, axis=1)
-    contracted = (lengths[1] <= CONTRACTION * lengths[0]) | (lengths[2] <= near)
-    return ends, good & contracted & ~system.at(ends, prepared).broken & np.isfinite(ends).all(1)
+    lengths, shorter = (np.linalg.norm(step, axis=1) for step in (first, second))
+    near = lengths <= CERTAIN * np.linalg.norm(ends, axis=1)
+    good &= (shorter <= CONTRACTION * lengths) | near
+    return ends, good & ~system.at(ends, prepared).broken & np.isfinite(ends).all(1)
 
 
 def _confirm(system: System, values: np.ndarray, rules: Sequence[Rule], track: _Track) -> None:

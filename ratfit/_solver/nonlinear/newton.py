@@ -30,15 +30,16 @@ def roots(values: Values, unknowns: np.ndarray, step: np.ndarray) -> np.ndarray:
 
     The residuals must be small against their terms; or the step must be small, and what it leaves over. The latter
     because a residual u0 = 0 is met at u0 = 1e-17, though it is as large as its only term; the former because the step
-    from a root of an ill-conditioned system is not small. Terms that have all underflowed, exp(-1000), meet nothing.
+    from a root of an ill-conditioned system is not small. Terms that have all underflowed, exp(-1000), meet nothing;
+    nor does a residual of 1e200 that a step of 1e-28 would cancel.
     """
     length = np.linalg.norm(unknowns, axis=1) + FLOOR
     scale = values.size + (np.abs(values.jacobian) * np.abs(unknowns)[:, None]).sum(2)
     alive = (values.size > 0) | (values.jacobian != 0).any(2)
     left = np.abs(values.value + np.matmul(values.jacobian, step[..., None])[..., 0])
     rounding = ROUNDING * np.linalg.norm(values.jacobian, axis=2) * length[:, None]
-    short = np.linalg.norm(step, axis=1) <= NEAR * length
-    met = (np.abs(values.value) <= ROOT * scale) | (short[:, None] & (left <= ROOT * scale + rounding))
+    short = (np.linalg.norm(step, axis=1) <= NEAR * length)[:, None] & (np.abs(values.value) <= FLOOR)
+    met = (np.abs(values.value) <= ROOT * scale) | (short & (left <= ROOT * scale + rounding))
     return (met & alive & np.isfinite(scale)).all(1)
 
 
@@ -79,24 +80,27 @@ def damped(system: System, starts: np.ndarray, prepared: Prepared, steps: int = 
 
 
 @_QUIET
-def newton(system: System, starts: np.ndarray, prepared: Prepared, steps: int = 6) -> tuple[np.ndarray, np.ndarray]:
-    """Newton's method by least squares, from places that lie close to a root.
+def newton(system: System, starts: np.ndarray, prepared: Prepared, steps: int = 8) -> tuple[np.ndarray, np.ndarray]:
+    """Newton's method by least squares, from places that lie close to a root, while its steps become shorter.
 
-    **Arguments:** as for `damped`. **Returns:** the places (places, unknowns), each the best on its way; and which are
-    roots, (places,) of bool.
+    That is deuflhard2011's natural test, blind to the units of the residuals.
+
+    **Arguments:** as for `damped`. **Returns:** the places (places, unknowns), and which are roots, (places,) of bool.
     """
-    here, values = starts, system.at(starts, prepared)
+    here, values = starts.copy(), system.at(starts, prepared)
     step = full_step(values)
+    active = np.arange(len(here))
     for _ in range(steps):
-        moved = system.at(here + step, prepared)
-        next_step = full_step(moved)
-        # The steps must become shorter (deuflhard2011's natural test): it is blind to the units of the residuals.
-        better = np.linalg.norm(next_step, axis=1) < np.linalg.norm(step, axis=1)
-        better &= np.isfinite(moved.value).all(1)
-        if not better.any():
+        there = here[active] + step[active]
+        moved = system.at(there, prepared.take(active))
+        following = full_step(moved)
+        shorter = np.linalg.norm(following, axis=1) < np.linalg.norm(step[active], axis=1)
+        shorter &= np.isfinite(moved.value).all(1)
+        active = active[shorter]
+        if not active.size:
             break
-        here = np.where(better[:, None], here + step, here)
-        values, step = moved.where(better, values), np.where(better[:, None], next_step, step)
+        here[active], step[active] = there[shorter], following[shorter]
+        values.put(active, moved.take(shorter))
     return here, roots(values, here, step)
 
 

@@ -69,7 +69,7 @@ def _mapped(steps: np.ndarray, low: np.ndarray, high: np.ndarray, maps: _Maps) -
 
 @functools.cache
 def _legendre(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """By Newton's method from Tricomi's estimate of the zeros (lether1995): numpy's matrix takes seconds for 1536."""
+    """By Newton's method from Tricomi's estimate of the zeros: numpy's matrix takes seconds for 1536."""
     zeros = np.cos(math.pi * (4 * np.arange(1, count + 1) - 1) / (4 * count + 2))
     for _ in range(6):
         value, before = zeros, np.ones(count)

@@ -14,6 +14,7 @@ from ratfit._condition import AbstractCondition
 from ratfit._parse import RatfitError, nearest
 from ratfit._problem import Problem
 from ratfit._problem_text import form_table
+from ratfit._solver import Table
 
 Reason = str
 """One sentence that says why something was rejected or not found, in words a person can act on."""
@@ -40,7 +41,8 @@ class Candidate:
     """A solution of the equations with all common factors cancelled: factor * numerator/denominator.
 
     `free` holds what the conditions leave open, with its range; `reason` is empty for an accepted candidate.
-    `certificate` is empty for closed forms; for coefficients found as numbers it says what is proved of them.
+    `certificate` is empty for closed forms; for coefficients found as numbers it says what is proved of them, and
+    `table` holds those that were found at nodes of the parameters.
     """
 
     expression: sp.Expr
@@ -48,6 +50,7 @@ class Candidate:
     conditions: tuple[Checked, ...] = ()
     reason: Reason = ""
     certificate: str = ""
+    table: Table | None = None
 
 
 @dataclass(frozen=True, repr=False)

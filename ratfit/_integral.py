@@ -66,7 +66,7 @@ def closed_integral(above: sp.Expr, below: sp.Expr, x: sp.Symbol, over: tuple[sp
         return integral_of(above, below, x, over)
     except RatfitError:
         pass
-    integrand = above / below
+    integrand, x, over = _rationalised(above / below, x, over)
     if not integrand.is_rational_function(x):
         return integrated(integrand, x, over)
     value = sp.nan
@@ -77,6 +77,24 @@ def closed_integral(above: sp.Expr, below: sp.Expr, x: sp.Symbol, over: tuple[sp
     if value.has(sp.Integral, sp.nan, sp.oo, sp.zoo, sp.I):
         raise RatfitError(f"the integral of {integrand} over [{over[0]}, {over[1]}] is not found in closed form")
     return value
+
+
+def _rationalised(
+    integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]
+) -> tuple[sp.Expr, sp.Symbol, tuple[sp.Expr, sp.Expr]]:
+    """The integral of a function of x and sqrt(1 - x**2) on [0, 1], or of sin**2 and cos**2 on a quarter turn, in the
+    tangent t: x = 1/sqrt(1 + t**2), or tan(x) = t; what does not become rational stays as it is.
+    """
+    t = sp.Dummy("t", positive=True)
+    if over == (0, 1) and integrand.has(sp.Pow(1 - x**2, sp.S.Half), sp.Pow(1 - x**2, -sp.S.Half)):
+        inner = {x: 1 / sp.sqrt(1 + t**2), sp.sqrt(1 - x**2): t / sp.sqrt(1 + t**2)}
+        moved = integrand.subs({sp.sqrt(1 - x**2): inner[sp.sqrt(1 - x**2)]}).subs(x, inner[x]) * (1 + t**2) ** sp.Rational(-3, 2) * t
+    elif over == (0, sp.pi / 2) and integrand.has(sp.sin(x), sp.cos(x)):
+        moved = integrand.subs({sp.sin(x): t / sp.sqrt(1 + t**2), sp.cos(x): 1 / sp.sqrt(1 + t**2)}) / (1 + t**2)
+    else:
+        return integrand, x, over
+    moved = sp.cancel(sp.powsimp(sp.together(moved)))
+    return (moved, t, (sp.S.Zero, sp.oo)) if moved.is_rational_function(t) else (integrand, x, over)
 
 
 def _primitive(numerator: sp.Expr, denominator: sp.Expr, x: sp.Symbol) -> sp.Expr:

@@ -5,4 +5,5 @@ from ratfit._solver.auto import pick as pick
 from ratfit._solver.auto import solve as solve
 from ratfit._solver.solution import Numbers as Numbers
 from ratfit._solver.solution import Solution as Solution
+from ratfit._solver.solution import Table as Table
 from ratfit._solver.solution import Undecided as Undecided

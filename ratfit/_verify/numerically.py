@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import mpmath
 import sympy as sp
@@ -12,22 +12,37 @@ from ratfit._generators import DIGITS
 from ratfit._integral import integral_parts
 from ratfit._parse import RatfitError
 from ratfit._poles import endpoint, function_of, multiprecise, polynomial_roots
+from ratfit._solver.nonlinear.residuals import Moment
 from ratfit._system import System
 from ratfit._target import sample_values
+
+BALL_DIGITS = 20
+"""Digits beyond those of a check that an integral's ball is computed with."""
 
 DISTANCE, LIMIT_DIGITS = mpmath.mpf(10) ** -150, 500
 """How far from its place a limit is looked at, and with how many digits: a root of the distance is still tiny."""
 
 
+Values = Mapping[sp.Symbol, sp.Expr]
+
+
 def numerical_residual(
-    system: System, condition: AbstractCondition, demand: sp.Expr, expression: sp.Expr
+    system: System,
+    condition: AbstractCondition,
+    demand: sp.Expr,
+    expression: sp.Expr,
+    places: Sequence[Values] | None = None,
 ) -> mpmath.mpf:
-    """The largest |found - demanded| over sampled parameters, by numerical differentiation or quadrature."""
+    """The largest |found - demanded| over sampled parameters, or given `places` of them.
+
+    By numerical differentiation, quadrature and limits.
+    """
     symbols = set[sp.Symbol]().union(
         expression.free_symbols, demand.free_symbols, *(e.free_symbols for e in condition.expressions())
     )
     worst = mpmath.mpf(0)
-    for values in sample_values(symbols - {system.problem.variable}, ("1/7", "4/7", "9/11")):
+    sampled = sample_values(symbols - {system.problem.variable}, ("1/7", "4/7", "9/11"))
+    for values in sampled if places is None else places:
         with mpmath.workdps(DIGITS):
             for found in _numerical(system, condition, expression, values):
                 if not mpmath.isfinite(found):
@@ -42,17 +57,33 @@ def _numerical(
     x = system.problem.variable
     if isinstance(condition, Integral):
         (low, high), rest = integral_parts(system.problem, condition)
-        function = function_of(condition.weight * expression, x, values)
-        places = _smooth_pieces(
-            condition.weight.xreplace(values), x, endpoint(low.xreplace(values)), endpoint(high.xreplace(values))
-        )
-        return [mpmath.quad(function, places) + multiprecise(rest.xreplace(values))]
+        integrand = (condition.weight * expression).xreplace(values)
+        ends = low.xreplace(values), high.xreplace(values)
+        return [_integral(integrand, x, ends) + multiprecise(rest.xreplace(values))]
     if isinstance(condition, Limit):
         return [_limit(system, condition, (expression - condition.minus) * condition.scale, values)]
     if isinstance(condition, Equation):
         return _equation_residuals(system, condition, expression, values)
     assert isinstance(condition, AbstractPointCondition)
     return [_derivative(system, condition.at, condition.order, expression, values)]
+
+
+def _integral(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> mpmath.mpf:
+    """By ball arithmetic, which knows its error, or where it has no ball narrow enough by tanh-sinh quadrature."""
+    import flint  # for integrals alone
+
+    from ratfit._ball import ball_integral
+
+    try:
+        with flint.ctx.workdps(DIGITS + BALL_DIGITS):
+            ball = ball_integral(Moment(integrand, *over), x, ())([])
+            if ball.is_finite() and ball.rad() < flint.arb(10) ** -DIGITS * (1 + abs(ball.mid())):
+                mantissa, exponent = ball.mid().man_exp()
+                return mpmath.ldexp(mpmath.mpf(int(mantissa)), int(exponent))
+    except RatfitError:
+        pass
+    low, high = map(endpoint, over)
+    return mpmath.quad(function_of(integrand, x, {}), _smooth_pieces(integrand, x, low, high))
 
 
 def _limit(system: System, limit: Limit, function: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> mpmath.mpf:

@@ -13,12 +13,12 @@ from ratfit._fit import Candidate, Checked
 from ratfit._fraction import presentable
 from ratfit._parse import RatfitError
 from ratfit._poles import endpoint, function_of, multiprecise, poles
-from ratfit._solver import Numbers, Solution
+from ratfit._solver import Numbers, Solution, Table
 from ratfit._system import System
 from ratfit._target import at_values, sample_values
 from ratfit._verify.candidate import Reduced, without_common_factors
 from ratfit._verify.exactly import found_exactly
-from ratfit._verify.numbers import shown
+from ratfit._verify.numbers import decimal, shown
 from ratfit._verify.numerically import numerical_residual
 
 TOLERANCE = mpmath.mpf("1e-30")
@@ -65,6 +65,8 @@ def _verified_numbers(system: System, candidate: Reduced, numbers: Numbers) -> C
         guessed = verify(system, numbers.guess)
         if not guessed.reason:
             return guessed
+    if numbers.table is not None:
+        return _verified_table(system, candidate, numbers, numbers.table)
     checked = tuple(
         _check_number(system, condition, demand, candidate)
         if condition in numbers.conditions
@@ -76,9 +78,28 @@ def _verified_numbers(system: System, candidate: Reduced, numbers: Numbers) -> C
     return Candidate(expression, {}, checked, reason, numbers.certificate)
 
 
-def _check_number(system: System, condition: AbstractCondition, demand: sp.Expr, candidate: Reduced) -> Checked:
+def _verified_table(system: System, candidate: Reduced, numbers: Numbers, table: Table) -> Candidate:
+    """A candidate whose coefficients are interpolated: conditions are checked at nodes, and measured between."""
+    expression = candidate.expression
+    rows = [dict(zip(table.parameters, node, strict=True)) for node in table.nodes]
+    nodes = [rows[0], rows[len(rows) // 2], rows[-1]]
+    checked = tuple(_check_number(system, c, d, candidate, nodes) for c, d in system.pairs)
+    middles = [{p: (a[p] + b[p]) / 2 for p in table.parameters} for a, b in zip(rows, rows[1:], strict=False)]
+    worst = max(numerical_residual(system, c, d, expression, middles[:: max(1, len(middles) // 4)]) for c, d in system.pairs)
+    words = f"{numbers.certificate}, where the conditions hold to {mpmath.nstr(worst, 2)}"
+    reason = _failure(checked, sp.S.One) or _pole(system, candidate.denominator)
+    return Candidate(candidate.factor * decimal(candidate.numerator / candidate.denominator), {}, checked, reason, words, table)
+
+
+def _check_number(
+    system: System,
+    condition: AbstractCondition,
+    demand: sp.Expr,
+    candidate: Reduced,
+    places: list[dict[sp.Symbol, sp.Expr]] | None = None,
+) -> Checked:
     try:
-        residual = numerical_residual(system, condition, demand, candidate.expression)
+        residual = numerical_residual(system, condition, demand, candidate.expression, places)
     except RatfitError:
         return Checked(condition, demand, False, None)
     return Checked(condition, demand, bool(residual < NUMERICAL * (1 + _size(demand))), float(residual))

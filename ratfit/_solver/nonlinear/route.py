@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
@@ -10,9 +10,6 @@ from ratfit._parse import RatfitError
 from ratfit._solver.nonlinear.assembly import Assembly, assembled
 from ratfit._solver.solution import Numbers, Solution
 from ratfit._system import System
-
-DIGITS = 60
-"""Digits that roots are polished to; fewer are shown."""
 
 SAME = 1e-7
 """Roots nearer than this, relative to their size, are one."""
@@ -73,33 +70,17 @@ def _near(a, b, homogeneous: bool) -> bool:
 
 def _polished_solution(assembly: Assembly, root) -> Solution | None:
     """The solution at a root, or None where it was none: a float's residual can be small where no root is."""
-    from ratfit._solver.nonlinear.krawczyk import certificate
-    from ratfit._solver.nonlinear.polish import polished
+    from ratfit._solver.nonlinear.certified import certified_root
 
-    point = polished(assembly.residuals, list(root), DIGITS)
-    if point is None:
+    found = certified_root(assembly.residuals, root)
+    if found is None:
         return None
-    proof = certificate(assembly.residuals, point)
-    numbers = [rational(value) for value in point]
-    found = dict(zip(assembly.residuals.unknowns, numbers, strict=True))
-    words = (
-        f"a true root lies within {proof.radius} of these numbers"
-        if proof.radius is not None
-        else f"not certified: {proof.reason}"
-    )
-    return Solution(
-        assembly.numerator.subs(found),
-        assembly.denominator.subs(found),
-        numbers=Numbers(assembly.numerical, words, _guess(assembly, numbers)),
-    )
+    values = dict(zip(assembly.residuals.unknowns, found.numbers, strict=True))
+    numbers = Numbers(assembly.numerical, found.words, _guess(assembly, found.numbers))
+    return Solution(assembly.numerator.subs(values), assembly.denominator.subs(values), numbers=numbers)
 
 
-def rational(midpoint) -> sp.Rational:
-    """The exact decimal of a midpoint, to DIGITS + 10 digits."""
-    return sp.Rational(midpoint.mid().str(DIGITS + 10, radius=False))
-
-
-def _guess(assembly: Assembly, numbers: list[sp.Rational]) -> Solution | None:
+def _guess(assembly: Assembly, numbers: Sequence[sp.Rational]) -> Solution | None:
     """A closed form that looks like the numbers, for the caller to verify."""
     from ratfit._solver.nonlinear.recognise import recognised
 

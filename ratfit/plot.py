@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import mpmath
@@ -40,6 +42,9 @@ _NAMES = {
     **{"value": "value", "zero": "zero", "maximum": "maximum", "minimum": "minimum", "inflection": "inflection"},
     **{"slope": "slope", "limit": "limit", "asymptote": "asymptote", "pole": "pole", "singularity": "singularity"},
 }
+
+_DECIMALS = re.compile(r"(\d+\.\d{4})\d+(?![\de])")
+"""Decimals that a picture has no room for."""
 
 LABEL = 62
 """Letters of an entry below the picture."""
@@ -118,7 +123,7 @@ def _view(study: Study) -> _View:
     heights = _broken(places, [_height(curve, p) for p in places], _pole_places(study, curve))
     marked = [_number(f.value, curve) for f in study.of("value", "maximum", "minimum") if f.value is not None]
     bottom, top = _heights(heights, marked, bool(study.of("pole", "singularity")))
-    margin = 0.03 * (right - left)
+    margin = 0.06 * (right - left)
     return _View(curve, left - margin, right + margin, bottom, top, places, heights)
 
 
@@ -231,6 +236,7 @@ def _draw_tangents(axes: Axes, study: Study, view: _View) -> list[Any]:
     """A short tangent, of the same length on paper everywhere, wherever the slope is known."""
     handles = []
     width, height = view.right - view.left, view.top - view.bottom
+    room = 0.35 * _closest([_number(f.place, view.curve) for f in study.of("slope", "maximum", "minimum")], width)
     for fact in study.of("slope", "maximum", "minimum", "inflection"):
         if not _is_slope(fact):
             continue
@@ -238,19 +244,24 @@ def _draw_tangents(axes: Axes, study: Study, view: _View) -> list[Any]:
         middle = view.height(place)
         if not all(map(math.isfinite, (place, slope, middle))):
             continue
-        half = 0.09 / math.hypot(1 / width, slope / height)
+        half = min(0.058 / math.hypot(1 / width, slope / height), room)
         (line,) = axes.plot(
             (place - half, place + half),
             (middle - slope * half, middle + slope * half),
             color=ORANGE,
             linewidth=3.2,
             solid_capstyle="round",
-            zorder=3,
-            clip_on=False,
+            zorder=1.5,
         )
         if fact.kind == "slope":
             handles.append((line, fact))
     return _entries(handles)
+
+
+def _closest(places: Iterable[float], width: float) -> float:
+    """The smallest distance between different places."""
+    ordered = sorted({p for p in places if math.isfinite(p)})
+    return min((b - a for a, b in pairwise(ordered)), default=width)
 
 
 def _is_slope(fact: Fact) -> bool:
@@ -285,7 +296,8 @@ def _entries(handles: Sequence[tuple[Any, Fact]]) -> list[Any]:
     found: dict[str, tuple[Any, list[str]]] = {}
     for handle, fact in handles:
         text = fact.text.removeprefix(f"{fact.kind} ").split(" in a ")[0].split(", beyond")[0].split(", of order")[0]
-        found.setdefault(fact.kind, (handle, []))[1].append(text.split(": the asymptote is ")[-1])
+        text = _DECIMALS.sub(r"\1", text.split(": the asymptote is ")[-1])
+        found.setdefault(fact.kind, (handle, []))[1].append(text)
     for kind, (handle, texts) in found.items():
         handle.set_label(_shortened(f"{_NAMES[kind]}: {', '.join(dict.fromkeys(texts))}", LABEL))
     return [handle for handle, _ in found.values()]

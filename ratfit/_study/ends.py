@@ -72,7 +72,8 @@ def _by_numbers(curve: Curve, end: sp.Expr, side: int, order: int) -> Fact | Non
     near = mpmath.mpf(0) if abs(near) < mpmath.mpf(10) ** -digits else near
     value = decimal(near, digits)
     condition = None if curve.middle else condition_at(end, order, value)
-    text = f"{MARKS[order]}({end}) = {mpmath.nstr(near, 12)}{curve.label}"
+    shown = "0" if near == 0 else mpmath.nstr(near, 12)
+    text = f"{MARKS[order]}({end}) = {shown}{curve.label}"
     return Fact(KINDS[order], text, condition, f"numeric to {digits} digits", end, value)
 
 

@@ -36,13 +36,19 @@ def _is_zero_at(curve: Curve, place: mpmath.mpf) -> bool:
 
 def _zero(scans: Scans, place: mpmath.mpf) -> Iterator[Fact]:
     curve, clock = scans.curve, scans.clock
-    closed = closed_place(curve, curve.target.expression, place, clock) or closed_kink(curve, place, clock)
+    closed = _closed(scans, curve.target.expression, place)
     multiplicity = growth(curve.number(0), place, 1) or sp.S.One
     often = "" if multiplicity == 1 else f", of order {multiplicity}"
     orders = range(max(1, int(sp.floor(multiplicity)))) if multiplicity.is_Integer else range(1)
     for order in orders:
         mark = f"f{chr(39) * order}"
         yield _stated(curve, clock, "zero", place, closed, order, sp.S.Zero, f"{mark}({{}}) = 0{often}")
+
+
+def _closed(scans: Scans, equation: sp.Expr, place: mpmath.mpf) -> sp.Expr | None:
+    """The closed form of a zero of the equation, or else of a kink."""
+    closed = closed_place(scans.curve, equation, place, scans.clock) if equation.has(scans.curve.x) else None
+    return closed if closed is not None else closed_kink(scans.curve, place, scans.clock)
 
 
 def _end_zeros(curve: Curve) -> Iterator[Fact]:
@@ -62,8 +68,7 @@ def extremum_facts(scans: Scans) -> Iterator[Fact]:
             continue
         kind = "maximum" if crossing.before > 0 else "minimum"
         smooth = crossing.nature == "zero"
-        closed = closed_place(curve, curve.expression(1), crossing.place, clock) if smooth else None
-        closed = closed or closed_kink(curve, crossing.place, clock)
+        closed = _closed(scans, curve.expression(1) if smooth else sp.S.One, crossing.place)
         what = "" if smooth else " in a kink" if crossing.nature == "jump" else " in a cusp"
         yield _height(curve, clock, kind, crossing.place, closed, f"{kind} f({{}}) = {{}}{what}")
         if smooth:
@@ -77,8 +82,7 @@ def inflection_facts(scans: Scans) -> Iterator[Fact]:
     for crossing in scans.scan(2).crossings:
         if any(abs(crossing.place - place) < mpmath.mpf("1e-30") for place in broken):
             continue
-        closed = closed_place(curve, curve.expression(2), crossing.place, clock)
-        closed = closed or closed_kink(curve, crossing.place, clock)
+        closed = _closed(scans, curve.expression(2), crossing.place)
         yield _height(curve, clock, "inflection", crossing.place, closed, "inflection f({}) = {}")
         if crossing.nature == "zero":
             yield _slope(curve, clock, crossing.place, closed)
@@ -129,4 +133,4 @@ def _stated(
 
 
 def _short(number: mpmath.mpf) -> str:
-    return mpmath.nstr(number, 12)
+    return "0" if number == 0 else mpmath.nstr(number, 12)

@@ -21,22 +21,25 @@ TRIAL_SECONDS = 2.0
 ALL_TRIALS_SECONDS = 6.0
 
 # Kinds of facts in the order in which their conditions are worth keeping; slopes after the values that they stand on.
-_WORTH = ("value", "pole", "limit", "maximum", "minimum", "slope", "zero", "curvature", "inflection")
+_WORTH = ("value", "pole", "asymptote", "limit", "maximum", "minimum", "slope", "zero", "curvature", "inflection")
 
 
 def suggested(study: Study, seconds: float) -> Problem | None:
-    """The problem with the most of the best conditions that some fraction of the right size keeps; None without one."""
+    """The problem with the most of the best conditions that one fraction of the right size keeps; None without one."""
     end = time.monotonic() + min(seconds, ALL_TRIALS_SECONDS)
     best = chosen(study)
+    family = None
     for count in range(len(best), 0, -1):
-        for form in _forms(best[:count]):
+        for form in _forms(best[:count], study.target.variable):
             left = end - time.monotonic()
             if left <= 0.05:
-                return None
+                return family
             problem = _problem(study, best[:count], form)
-            if problem is not None and _works(problem, min(TRIAL_SECONDS, left)):
+            status = _status(problem, min(TRIAL_SECONDS, left)) if problem is not None else ""
+            if status == "unique":
                 return problem
-    return None
+            family = family or (problem if status in ("family", "several") else None)
+    return family
 
 
 def chosen(study: Study) -> tuple[AbstractCondition, ...]:
@@ -55,9 +58,10 @@ def _fits(fact: Fact, study: Study) -> bool:
     """Whether a fact is one that fractions of low degree are asked to keep: no far-off limit, no high order."""
     if fact.kind not in _WORTH or fact.place is None:
         return False
-    if fact.kind == "limit":
-        return fact.place in study.target.domain
-    return fact.kind != "curvature" or not any(f.kind == "limit" for f in study.facts)
+    if fact.place.is_infinite:
+        # A fraction has one limit at both infinities: that at oo speaks for both.
+        return fact.place in study.target.domain and (fact.place is sp.oo or sp.oo not in study.target.domain)
+    return fact.kind != "curvature" or not any(f.place in study.target.domain for f in study.of("limit", "asymptote"))
 
 
 def _key(condition: AbstractCondition) -> tuple:
@@ -79,18 +83,29 @@ def _complete(conditions: list[AbstractCondition]) -> list[AbstractCondition]:
     return kept
 
 
-def _forms(conditions: tuple[AbstractCondition, ...]) -> Iterator[Rational]:
+def _forms(conditions: tuple[AbstractCondition, ...], x: sp.Symbol) -> Iterator[Rational]:
     """Fractions with as many coefficients as conditions, evenly split first; degrees that cannot do are left out."""
-    count = len(conditions)
     far = next((c for c in conditions if isinstance(c, Limit) and c.at.is_infinite), None)
-    poles = [c for c in conditions if isinstance(c, Limit) and not c.at.is_infinite]
+    poles = sum(_weight(c, x) - 1 for c in conditions if isinstance(c, Limit) and not c.at.is_infinite)
+    count = sum(_weight(c, x) for c in conditions)
     for above in sorted(range(count), key=lambda n: (abs(2 * n - count + 1), -n)):
         below = count - 1 - above
-        if below < len(poles):
-            continue
-        if far is not None and (above != below if far.equals != 0 else above >= below):
-            continue
-        yield Rational(above, below)
+        if below >= poles and (far is None or _reaches(above - below, far)):
+            yield Rational(above, below)
+
+
+def _weight(condition: AbstractCondition, x: sp.Symbol) -> int:
+    """How many coefficients a condition takes, in a fraction whose degrees were chosen for it."""
+    if not isinstance(condition, Limit):
+        return 1
+    if condition.at.is_infinite:
+        return 2 if condition.minus != 0 else 0 if condition.equals == 0 else 1
+    return 1 + int(sp.degree(condition.scale, x))  # a pole of that order, and its coefficient
+
+
+def _reaches(excess: int, far: Limit) -> bool:
+    """Whether a fraction with that excess of degrees can have a limit, a nonzero one, or an oblique asymptote."""
+    return excess == 1 if far.minus != 0 else excess == 0 if far.equals != 0 else excess < 0
 
 
 def _problem(study: Study, conditions: tuple[AbstractCondition, ...], form: Rational) -> Problem | None:
@@ -100,11 +115,11 @@ def _problem(study: Study, conditions: tuple[AbstractCondition, ...], form: Rati
         return None
 
 
-def _works(problem: Problem, seconds: float) -> bool:
+def _status(problem: Problem, seconds: float) -> str:
     try:
-        return bool(derive(problem, timeout=seconds).candidates)
+        return derive(problem, timeout=seconds).status
     except RatfitError:
-        return False
+        return ""
 
 
 def offered(study: Study) -> tuple[AbstractCondition, ...]:

@@ -9,6 +9,7 @@ import sympy as sp
 
 from ratfit._field import is_zero
 from ratfit._generators import sampled
+from ratfit._parse import RatfitError, parse_expression
 from ratfit._poles import multiprecise
 from ratfit._study.clock import Clock
 from ratfit._study.crossings import kinked_arguments
@@ -131,13 +132,22 @@ def _solutions(curve: Curve, equation: sp.Expr, clock: Clock) -> list[sp.Expr]:
 
 def _is_the_place(curve: Curve, solution: sp.Expr, place: mpmath.mpf, clock: Clock) -> bool:
     """Whether a solution is the place seen at the middle of the parameters, and stays in the domain elsewhere."""
-    if solution.free_symbols - set(curve.parameters):
+    if solution.free_symbols - set(curve.parameters) or not readable(solution):
         return False
     with mpmath.workdps(DIGITS):
         here = clock.attempt(lambda: multiprecise(solution.xreplace(curve.middle)))
         if here is None or abs(here - place) > TINY * (1 + abs(place)):
             return False
     return clock.attempt(lambda: inside(solution, curve.target)) is True
+
+
+def readable(expression: sp.Expr) -> bool:
+    """Whether ratfit's grammar has words for an expression: not for CRootOf or LambertW."""
+    try:
+        parse_expression(str(expression), {s.name: s for s in expression.free_symbols}, "place")
+    except RatfitError:
+        return False
+    return True
 
 
 def inside(place: sp.Expr, target: Target) -> bool:

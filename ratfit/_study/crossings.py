@@ -56,6 +56,11 @@ class Scans:
         """The scan of the derivative of that order."""
         if order not in self._made:
             self._made[order] = _scan(self.curve.number(order), self.curve.nodes)
+            if self._made[order].more:
+                what = f"f{chr(39) * order}"
+                self.clock.notes.append(
+                    f"{what} changes its sign more often than {MOST} times: the first are followed up"
+                )
         return self._made[order]
 
     @cached_property

@@ -17,6 +17,9 @@ from ratfit._target import Target, at_values, sample_values
 DIGITS = 50
 """Digits of every number that a fact states or is confirmed with."""
 
+FINE = 8 * DIGITS
+"""Digits of work on the way to a place: at 10**-40 from it 1/x**4 alone takes away 160."""
+
 SHOWN = 30
 """Digits of a number that is found by numbers alone and printed."""
 
@@ -42,9 +45,18 @@ def differentiated(expression: sp.Expr, x: sp.Symbol, order: int) -> sp.Expr:
     return expression
 
 
+def _bounded_exp(power: mpmath.mpf) -> mpmath.mpf:
+    """exp, but not of what an exp far out has made: mpmath would fill the memory with its digits."""
+    if mpmath.mag(power) < 300:
+        return mpmath.exp(power)
+    if mpmath.re(power) > 0:
+        raise OverflowError("exp of a number beyond 10**90")
+    return mpmath.mpf(0)
+
+
 def numbers_of(expression: sp.Expr, x: sp.Symbol) -> Number:
     """The expression as a function of x at mpmath's working precision; None where it is no finite real number."""
-    function = sp.lambdify([x], expression, "mpmath", cse=True)
+    function = sp.lambdify([x], expression, [{"exp": _bounded_exp}, "mpmath"], cse=True)
 
     def number(place: mpmath.mpf) -> mpmath.mpf | None:
         try:
@@ -113,7 +125,7 @@ class Curve:
     @cached_property
     def ends(self) -> tuple[mpmath.mpf, mpmath.mpf]:
         """The ends of the domain as numbers."""
-        with mpmath.workdps(3 * DIGITS):
+        with mpmath.workdps(FINE):
             low, high = (endpoint(end.xreplace(self.middle)) for end in self.target.domain)
             return low, high
 
@@ -155,7 +167,7 @@ def exponent_of(number: Number, place: mpmath.mpf, side: int) -> mpmath.mpf | No
     At an infinite place the distance is that from 0, so that x**2 has the exponent 2 there.
     """
     far = mpmath.isinf(place)
-    with mpmath.workdps(3 * DIGITS):
+    with mpmath.workdps(FINE):
         steps = [mpmath.mpf(10) ** (k if far else -k) for k in (10, 20, 30)]
         values = [number(side * step if far else place + side * step) for step in steps]
         if any(value is None or value == 0 for value in values):
@@ -184,9 +196,9 @@ def simple_fraction(number: mpmath.mpf, largest: int, tolerance: mpmath.mpf) -> 
 
 
 def tends_to(number: Number, place: mpmath.mpf, side: int, value: mpmath.mpf) -> bool:
-    """Whether numbers at 150 digits come ever nearer to a value on the way to a place."""
+    """Whether numbers at 400 digits come ever nearer to a value on the way to a place."""
     far = mpmath.isinf(place)
-    with mpmath.workdps(3 * DIGITS):
+    with mpmath.workdps(FINE):
         steps = [mpmath.mpf(10) ** (k if far else -k) for k in (8, 40)]
         found = [number(side * step if far else place + side * step) for step in steps]
         if found[1] is None:
@@ -201,7 +213,7 @@ def agrees(curve: Curve, expression: sp.Expr, place: sp.Expr, side: int, value: 
     """Whether an expression tends to a value at a place by numbers, for three values of each parameter."""
     for values in curve.samples():
         number = numbers_of(expression.xreplace(values), curve.x)
-        with mpmath.workdps(3 * DIGITS):
+        with mpmath.workdps(FINE):
             try:
                 at, claimed = endpoint(place.xreplace(values)), multiprecise(value.xreplace(values))
             except RatfitError:  # it is no real number there
@@ -209,6 +221,11 @@ def agrees(curve: Curve, expression: sp.Expr, place: sp.Expr, side: int, value: 
             if not tends_to(number, abs(at) if mpmath.isinf(at) else at, side, claimed):
                 return False
     return True
+
+
+def shown(number: mpmath.mpf, digits: int = 12) -> str:
+    """A number for a text: a whole one without its point."""
+    return "0" if number == 0 else mpmath.nstr(number, digits).removesuffix(".0")
 
 
 def decimal(number: mpmath.mpf, digits: int = SHOWN) -> sp.Rational:

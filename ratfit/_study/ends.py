@@ -11,7 +11,7 @@ from ratfit._condition import Derivative, Value
 from ratfit._poles import endpoint
 from ratfit._study.clock import Clock
 from ratfit._study.closed import shorter
-from ratfit._study.curve import DIGITS, SHOWN, Curve, agrees, decimal, exponent_of, growth, numbers_of
+from ratfit._study.curve import FINE, SHOWN, Curve, agrees, decimal, exponent_of, growth, numbers_of, shown
 from ratfit._study.fact import SYMBOLIC, Fact
 
 KINDS = ("value", "slope", "curvature")
@@ -59,7 +59,7 @@ def _by_numbers(curve: Curve, end: sp.Expr, side: int, order: int) -> Fact | Non
         condition = condition_at(end, order, sp.S.Zero)
         found = f"numeric, falls off like a power{settings}"
         return Fact(KINDS[order], f"{MARKS[order]}({end}) = 0", condition, found, end, sp.S.Zero)
-    with mpmath.workdps(3 * DIGITS):
+    with mpmath.workdps(FINE):
         near, mid, far = (number(place + side * mpmath.mpf(10) ** -k) for k in (40, 30, 10))
     if near is None or mid is None or far is None:
         return None
@@ -72,14 +72,13 @@ def _by_numbers(curve: Curve, end: sp.Expr, side: int, order: int) -> Fact | Non
     near = mpmath.mpf(0) if abs(near) < mpmath.mpf(10) ** -digits else near
     value = decimal(near, digits)
     condition = None if curve.middle else condition_at(end, order, value)
-    shown = "0" if near == 0 else mpmath.nstr(near, 12)
-    text = f"{MARKS[order]}({end}) = {shown}{curve.label}"
+    text = f"{MARKS[order]}({end}) = {shown(near)}{curve.label}"
     return Fact(KINDS[order], text, condition, f"numeric to {digits} digits", end, value)
 
 
 def _vanishes(curve: Curve, values: dict[sp.Symbol, sp.Expr], side: int, order: int) -> bool:
     number = numbers_of(curve.expression(order).xreplace(values), curve.x)
-    with mpmath.workdps(3 * DIGITS):
+    with mpmath.workdps(FINE):
         place = endpoint(curve.target.domain[0 if side == 1 else 1].xreplace(values))
         exponent = exponent_of(number, place, side)
         return exponent is not None and exponent > mpmath.mpf("1e-3")

@@ -10,7 +10,7 @@ import sympy as sp
 from ratfit._condition import Limit
 from ratfit._study.clock import Clock
 from ratfit._study.closed import shorter
-from ratfit._study.curve import DIGITS, Curve, agrees, growth, numbers_of
+from ratfit._study.curve import DIGITS, FINE, Curve, agrees, growth, numbers_of
 from ratfit._study.fact import SYMBOLIC, Fact
 
 SECONDS = 1.5
@@ -95,7 +95,7 @@ def _decay(curve: Curve, clock: Clock, place: sp.Expr, side: int, value: sp.Expr
 
 def _vanishes_fast(curve: Curve, side: int, rest: sp.Expr) -> bool:
     number = numbers_of(rest.xreplace(curve.middle), curve.x)
-    with mpmath.workdps(3 * DIGITS):
+    with mpmath.workdps(FINE):
         sizes = [number(side * mpmath.mpf(10) ** k) for k in (2, 3, 4)]
         if any(size is None for size in sizes) or sizes[0] == 0:
             return bool(sizes[0] == 0 and sizes[1] == 0)

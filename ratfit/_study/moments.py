@@ -11,7 +11,7 @@ from ratfit._condition import Integral
 from ratfit._poles import multiprecise
 from ratfit._study.closed import shorter
 from ratfit._study.crossings import Scans
-from ratfit._study.curve import SHOWN, Curve, decimal, growth, numbers_of
+from ratfit._study.curve import SHOWN, Curve, Number, decimal, growth, numbers_of, shown
 from ratfit._study.fact import SYMBOLIC, Fact
 
 QUADRATURE_DIGITS = 40
@@ -40,14 +40,38 @@ def _divergence(scans: Scans, power: int) -> str:
     for end, place, side in zip(curve.target.domain, curve.ends, (1, -1), strict=True):
         infinite = mpmath.isinf(place)
         exponent = growth(number, place, (1 if place > 0 else -1) if infinite else side)
+        if infinite and exponent is None and _keeps_up(number, 1 if place > 0 else -1):
+            return f"it does not fall off at {end}{curve.label}"
         if exponent is not None and (exponent >= -1 if infinite else exponent <= -1):
             far = curve.x if infinite else sp.Symbol("distance")
             return f"it behaves like {far**exponent} at {end}{curve.label}"
     for crossing in (c for order in (0, 1) for c in scans.scan(order).crossings if c.nature == "pole"):
         exponent = growth(number, crossing.place, 1)
         if exponent is not None and exponent <= -1:
-            return f"there is a pole at {mpmath.nstr(crossing.place, 12)}{curve.label}"
+            return f"there is a pole at {shown(crossing.place)}{curve.label}"
     return ""
+
+
+def _keeps_up(number: Number, side: int) -> bool:
+    """Whether something that follows no power is of one sign far out and no smaller than 1/x."""
+    with mpmath.workdps(QUADRATURE_DIGITS):
+        places = [side * mpmath.mpf(10) ** k * mpmath.pi for k in (4, 6, 8, 10)]
+        values = [number(place) for place in places]
+        if any(value is None for value in values):
+            return False
+        sizes = [value * abs(place) for value, place in zip(values, places, strict=True)]
+    return len({mpmath.sign(size) for size in sizes}) == 1 and abs(sizes[3]) > abs(sizes[2]) > abs(sizes[1])
+
+
+def _falls_off(scans: Scans, number: Number) -> bool:
+    """Whether the integrand is small enough far out for a quadrature to be trusted."""
+    with mpmath.workdps(QUADRATURE_DIGITS):
+        for side, end in zip((-1, 1), scans.curve.ends, strict=True):
+            if mpmath.isinf(end):
+                near, far = (number(side * place) for place in (mpmath.mpf(10) ** 3, mpmath.mpf(10) ** 9))
+                if far is None or near is None or abs(far) * 10**9 > 1e-2 * (abs(near) * 10**3 + 1e-30):
+                    return False
+    return True
 
 
 def _moment(scans: Scans, power: int, what: str) -> Fact | None:
@@ -65,7 +89,7 @@ def _moment(scans: Scans, power: int, what: str) -> Fact | None:
     if digits < 6:
         return None
     condition = None if curve.middle else Integral(weight, equals=decimal(number, digits))
-    text = f"{what} = {mpmath.nstr(number, min(digits, 12))}{curve.label}"
+    text = f"{what} = {shown(number, min(digits, 12))}{curve.label}"
     return Fact(KINDS[power], text, condition, f"numeric to {digits} digits", None, decimal(number, digits))
 
 
@@ -73,6 +97,8 @@ def _quadrature(scans: Scans, weight: sp.Expr) -> tuple[mpmath.mpf, int]:
     """The integral by numbers, split where derivatives break, and the digits that two refinements share."""
     curve = scans.curve
     number = numbers_of((curve.target.expression * weight).xreplace(curve.middle), curve.x)
+    if not _falls_off(scans, number):
+        raise ValueError("no quadrature is to be trusted here")
     breaks = [*scans.breaks, *scans.kinks, *(c.place for order in (0, 1, 2) for c in scans.scan(order).crossings)]
     low, high = curve.ends
     with mpmath.workdps(QUADRATURE_DIGITS):

@@ -10,7 +10,7 @@ import sympy as sp
 from ratfit._study.clock import Clock
 from ratfit._study.closed import closed_kink, closed_place, inside, shorter
 from ratfit._study.crossings import WORK, Scans
-from ratfit._study.curve import SHOWN, Curve, agrees, decimal, growth
+from ratfit._study.curve import SHOWN, Curve, agrees, decimal, growth, shown
 from ratfit._study.ends import condition_at
 from ratfit._study.fact import SYMBOLIC, Fact
 
@@ -102,12 +102,12 @@ def _height(
     with mpmath.workdps(WORK):
         found = curve.number(order)(place)
     if found is None:
-        return Fact(kind, text.format(_short(place), "?") + curve.label, None, NUMERIC, decimal(place))
+        return Fact(kind, text.format(shown(place), "?") + curve.label, None, NUMERIC, decimal(place))
     value = decimal(found)
     at = closed if closed is not None else decimal(place)
     condition = None if curve.middle else condition_at(at, order, value)
-    shown = closed if closed is not None else _short(place)
-    return Fact(kind, text.format(shown, _short(found)) + curve.label, condition, NUMERIC, at, value)
+    where = closed if closed is not None else shown(place)
+    return Fact(kind, text.format(where, shown(found)) + curve.label, condition, NUMERIC, at, value)
 
 
 def _slope(curve: Curve, clock: Clock, place: mpmath.mpf, closed: sp.Expr | None) -> Fact:
@@ -129,8 +129,4 @@ def _stated(
         return Fact(kind, text.format(closed), condition_at(closed, order, value), SYMBOLIC, closed, value)
     at = decimal(place)
     condition = None if curve.middle else condition_at(at, order, value)
-    return Fact(kind, text.format(_short(place)) + curve.label, condition, NUMERIC, at, value)
-
-
-def _short(number: mpmath.mpf) -> str:
-    return "0" if number == 0 else mpmath.nstr(number, 12)
+    return Fact(kind, text.format(shown(place)) + curve.label, condition, NUMERIC, at, value)

@@ -10,7 +10,7 @@ import sympy as sp
 from ratfit._condition import Limit
 from ratfit._study.closed import closed_place, shorter
 from ratfit._study.crossings import Scans
-from ratfit._study.curve import SHOWN, Curve, agrees, decimal, growth
+from ratfit._study.curve import SHOWN, Curve, agrees, decimal, growth, shown
 from ratfit._study.fact import SYMBOLIC, Fact
 
 
@@ -46,7 +46,7 @@ def _pole(scans: Scans, place: mpmath.mpf, closed: sp.Expr | None, order: sp.Rat
         closed = closed_place(curve, inverse, place, clock)
     kind = "pole" if order.is_Integer else "singularity"
     if closed is None:
-        text = f"{kind} of order {order} at {mpmath.nstr(place, 12)}{curve.label}"
+        text = f"{kind} of order {order} at {shown(place)}{curve.label}"
         return Fact(kind, text, None, f"numeric to {SHOWN} digits", decimal(place))
     distance = curve.x - closed if closed != curve.target.domain[1] or order.is_Integer else closed - curve.x
     scale = distance**order

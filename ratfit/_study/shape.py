@@ -11,7 +11,7 @@ import sympy as sp
 
 from ratfit._study.clock import Clock
 from ratfit._study.crossings import Scans
-from ratfit._study.curve import Curve
+from ratfit._study.curve import Curve, shown
 from ratfit._study.fact import SYMBOLIC, Fact
 
 KINDS = {1: "monotonicity", 2: "convexity"}
@@ -89,14 +89,14 @@ def _whole(scans: Scans, order: int, sign: int) -> Fact:
 
 
 def _in_pieces(curve: Curve, order: int, pieces: list[Piece], points: int) -> Fact:
-    ends = [str(curve.target.domain[0]), *(_shown(p.place) for p in pieces[1:]), str(curve.target.domain[1])]
+    ends = [
+        str(curve.target.domain[0]),
+        *(shown(p.place, 8) for p in pieces[1:] if p.place is not None),
+        str(curve.target.domain[1]),
+    ]
     texts = [f"{WORDS[order][p.sign]} on [{a}, {b}]" for p, (a, b) in zip(pieces, pairwise(ends), strict=True)]
     seen = f"no other change of sign of {MARK[order]} seen at {points} points"
     return Fact(KINDS[order], ", ".join(texts) + curve.label, None, seen)
-
-
-def _shown(place: mpmath.mpf | None) -> str:
-    return "0" if not place else mpmath.nstr(place, 8)
 
 
 def has_sign(curve: Curve, order: int, sign: int, clock: Clock) -> bool:

@@ -12,7 +12,7 @@ from ratfit._problem import Problem
 from ratfit._problem_file import condition_of
 from ratfit._problem_text import condition_table
 from ratfit._study.clock import FAILURES, Clock
-from ratfit._study.crossings import MOST, Scans
+from ratfit._study.crossings import Scans
 from ratfit._study.curve import Curve
 from ratfit._study.ends import end_facts
 from ratfit._study.equations import equation_facts
@@ -46,7 +46,7 @@ def study(target: Target | str | Path, *, timeout: float = 30.0) -> Study:
     facts: list[Fact] = []
     for what, part in _parts(curve, clock):
         _collect(facts, what, part, curve, clock)
-    notes = [*_first_notes(curve, facts), *dict.fromkeys(clock.notes)]
+    notes = [*_first_notes(curve), *dict.fromkeys(clock.notes)]
     known = Study(target, tuple(facts), tuple(notes))
     return Study(target, known.facts, known.notes, suggested(known, (1 - FIRST_SHARE) * timeout + clock.left()))
 
@@ -110,12 +110,12 @@ def _readable(fact: Fact, curve: Curve) -> Fact:
     return fact
 
 
-def _first_notes(curve: Curve, facts: list[Fact]) -> list[str]:
+def _first_notes(curve: Curve) -> list[str]:
     notes = []
     if curve.middle:
         notes.append(f"numbers that could not be had with symbols were taken{curve.label}")
     notes.append(
         f"places inside the domain were sought by changes of sign at {len(curve.nodes)} points; "
-        f"closer ones may be missed, and of one kind at most {MOST} are followed up"
+        f"closer ones may be missed"
     )
     return notes

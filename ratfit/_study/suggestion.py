@@ -25,21 +25,18 @@ _WORTH = ("value", "pole", "asymptote", "limit", "maximum", "minimum", "slope", 
 
 
 def suggested(study: Study, seconds: float) -> Problem | None:
-    """The problem with the most of the best conditions that one fraction of the right size keeps; None without one."""
+    """The problem with the most of the best conditions that fractions of the right size keep; None without one."""
     end = time.monotonic() + min(seconds, ALL_TRIALS_SECONDS)
     best = chosen(study)
-    family = None
     for count in range(len(best), 0, -1):
         for form in _forms(best[:count], study.target.variable):
             left = end - time.monotonic()
             if left <= 0.05:
-                return family
+                return None
             problem = _problem(study, best[:count], form)
-            status = _status(problem, min(TRIAL_SECONDS, left)) if problem is not None else ""
-            if status == "unique":
+            if problem is not None and _works(problem, min(TRIAL_SECONDS, left)):
                 return problem
-            family = family or (problem if status in ("family", "several") else None)
-    return family
+    return None
 
 
 def chosen(study: Study) -> tuple[AbstractCondition, ...]:
@@ -84,14 +81,15 @@ def _complete(conditions: list[AbstractCondition]) -> list[AbstractCondition]:
 
 
 def _forms(conditions: tuple[AbstractCondition, ...], x: sp.Symbol) -> Iterator[Rational]:
-    """Fractions with as many coefficients as conditions, evenly split first; degrees that cannot do are left out."""
+    """Fractions with as many coefficients as conditions, or one more, evenly split first; all that can do at all."""
     far = next((c for c in conditions if isinstance(c, Limit) and c.at.is_infinite), None)
     poles = sum(_weight(c, x) - 1 for c in conditions if isinstance(c, Limit) and not c.at.is_infinite)
-    count = sum(_weight(c, x) for c in conditions)
-    for above in sorted(range(count), key=lambda n: (abs(2 * n - count + 1), -n)):
-        below = count - 1 - above
-        if below >= poles and (far is None or _reaches(above - below, far)):
-            yield Rational(above, below)
+    needed = sum(_weight(c, x) for c in conditions)
+    for count in (needed, needed + 1):  # what clashes in the smallest fractions a family may keep
+        for above in sorted(range(count), key=lambda n: (abs(2 * n - count + 1), -n)):
+            below = count - 1 - above
+            if below >= poles and (far is None or _reaches(above - below, far)):
+                yield Rational(above, below)
 
 
 def _weight(condition: AbstractCondition, x: sp.Symbol) -> int:
@@ -115,11 +113,11 @@ def _problem(study: Study, conditions: tuple[AbstractCondition, ...], form: Rati
         return None
 
 
-def _status(problem: Problem, seconds: float) -> str:
+def _works(problem: Problem, seconds: float) -> bool:
     try:
-        return derive(problem, timeout=seconds).status
+        return bool(derive(problem, timeout=seconds).candidates)
     except RatfitError:
-        return ""
+        return False
 
 
 def offered(study: Study) -> tuple[AbstractCondition, ...]:

@@ -45,8 +45,8 @@ def explained(fit: Fit, route: str) -> Fit:
         )
     elif fit.route == "nonlinear":
         reasons.append(
-            "many starts found no numbers that keep all conditions, which does not prove that there are none: "
-            "try another --seed, drop a condition or raise a degree"
+            "many starts found no numbers that keep all conditions, which does not prove that there are none; "
+            + (_without_one(fit.problem) or "try another --seed, drop a condition or raise a degree")
         )
     else:
         reasons.append(_clash_in_words(fit.problem, route))
@@ -59,6 +59,26 @@ def _clash_in_words(problem: Problem, route: str) -> str:
     what = "these conditions clash" if len(clash) < len(problem.conditions) else "all conditions together clash"
     search = "" if proved else " (the search for fewer was cut short)"
     return f"{what} in this form: {names}{search}. Drop one of them or raise a degree"
+
+
+def _without_one(problem: Problem) -> str:
+    """Which condition could be left out so that the others are kept, in words; nothing where none was found in time."""
+    with TimeLimit(CLASH_SECONDS):
+        for condition in reversed(problem.conditions):
+            others = problem.with_conditions(tuple(c for c in problem.conditions if c != condition))
+            candidate = _any_candidate(others) if others.conditions else None
+            if candidate is not None:
+                return f"without the {describe(condition)} there is an answer, so drop that or raise a degree"
+    return ""
+
+
+def _any_candidate(problem: Problem) -> Candidate | None:
+    try:
+        system = equations(problem)
+        found = (verify(system, solution) for solution in solve(system, pick(system)))
+        return next((candidate for candidate in found if not candidate.reason), None)
+    except (RatfitError, Undecided):
+        return None
 
 
 def _smallest_clash(problem: Problem, route: str) -> tuple[tuple[AbstractCondition, ...], bool]:
@@ -135,7 +155,9 @@ def _completing(system: System, missing: int, names: str) -> list[str]:
     if not chosen:
         return []
     words = "a further condition" if missing == 1 else f"{missing} further conditions"
-    return [f"{names} free: {words} would single out one, such as {' '.join(chosen)}; or choose, as in --set NAME=VALUE"]
+    return [
+        f"{names} free: {words} would single out one, such as {' '.join(chosen)}; or choose, as in --set NAME=VALUE"
+    ]
 
 
 def _further(system: System) -> Iterator[AbstractCondition]:

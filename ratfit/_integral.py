@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import sympy as sp
+from sympy.polys.polyerrors import BasePolynomialError
 
 from ratfit._condition import Integral
 from ratfit._deadline import TimeLimit
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
 from ratfit._target import INTEGRAL_SECONDS, sample_values
+
+
+UNFINISHED = (BasePolynomialError, NotImplementedError, ValueError, TypeError, AttributeError, RecursionError)
+"""What sympy raises from inside an integral that it cannot do."""
 
 
 def integral_parts(problem: Problem, condition: Integral) -> tuple[tuple[sp.Expr, sp.Expr], sp.Expr]:
@@ -36,9 +43,10 @@ def _ordered(a: sp.Expr, b: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
 def integrated(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
     if integrand == 0:
         return sp.S.Zero
-    with TimeLimit(INTEGRAL_SECONDS) as limit:
+    value = sp.nan
+    with TimeLimit(INTEGRAL_SECONDS), suppress(*UNFINISHED):
         value = sp.integrate(sp.expand(integrand), (x, *over))
-    if limit.passed or value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo):
+    if value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo):
         raise RatfitError(
             f"the integral of {integrand} over [{over[0]}, {over[1]}] has no closed form; choose another weight"
         )
@@ -70,7 +78,7 @@ def closed_integral(above: sp.Expr, below: sp.Expr, x: sp.Symbol, over: tuple[sp
     if not integrand.is_rational_function(x):
         return integrated(integrand, x, over)
     value = sp.nan
-    with TimeLimit(INTEGRAL_SECONDS):
+    with TimeLimit(INTEGRAL_SECONDS), suppress(*UNFINISHED):
         primitive = sp.integrate(sp.apart(integrand, x), x)
         ends = [sp.limit(primitive, x, end) if end.is_infinite else primitive.subs(x, end) for end in over]
         value = ends[1] - ends[0]
@@ -88,7 +96,11 @@ def _rationalised(
     t = sp.Dummy("t", positive=True)
     if over == (0, 1) and integrand.has(sp.Pow(1 - x**2, sp.S.Half), sp.Pow(1 - x**2, -sp.S.Half)):
         inner = {x: 1 / sp.sqrt(1 + t**2), sp.sqrt(1 - x**2): t / sp.sqrt(1 + t**2)}
-        moved = integrand.subs({sp.sqrt(1 - x**2): inner[sp.sqrt(1 - x**2)]}).subs(x, inner[x]) * (1 + t**2) ** sp.Rational(-3, 2) * t
+        moved = (
+            integrand.subs({sp.sqrt(1 - x**2): inner[sp.sqrt(1 - x**2)]}).subs(x, inner[x])
+            * (1 + t**2) ** sp.Rational(-3, 2)
+            * t
+        )
     elif over == (0, sp.pi / 2) and integrand.has(sp.sin(x), sp.cos(x)):
         moved = integrand.subs({sp.sin(x): t / sp.sqrt(1 + t**2), sp.cos(x): 1 / sp.sqrt(1 + t**2)}) / (1 + t**2)
     else:

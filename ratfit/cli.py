@@ -178,6 +178,8 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     if options["unique"] and fit.status in ("family", "several"):
         fit = _refused(fit)
     _write(_rendered(fit, shown, options["format_"]), options["out"])
+    for line in fit.advice:
+        print(f"ratfit: {line}", file=sys.stderr)
     return 0 if fit.expression is not None else 1
 
 

@@ -22,6 +22,9 @@ _EVALUATIONS = 20_000
 """Places at which one integrand is looked at before the integral is given up, as at a pole: some tenths of a second."""
 
 
+_UNIT = sp.Dummy("unit", nonnegative=True)
+
+
 class AnyMoment(Protocol):
     """What an integral is made of: its integrand and the ends of its range."""
 
@@ -90,7 +93,7 @@ def _pieces(
         raise RatfitError(f"no ball integral from {low} to {high}: the ends must be numbers")
     hard_low, hard_high = (_is_hard(integrand, variable, end, symbols) for end in (low, high))
     if not (hard_low or hard_high):
-        return (_Piece(compiled(integrand, symbols, variable), ball_function(low, ()), ball_function(high, ())),)
+        return (_regular(integrand, variable, low, high, symbols),)
     if (hard_low and hard_high) or (low.is_finite and high.is_finite):
         middle = _middle(low, high)
     else:
@@ -99,12 +102,23 @@ def _pieces(
     if hard_low:
         found.append(_approach(integrand, variable, low, 1, middle, symbols))
     elif middle != low:
-        found.append(_Piece(compiled(integrand, symbols, variable), ball_function(low, ()), ball_function(middle, ())))
+        found.append(_regular(integrand, variable, low, middle, symbols))
     if hard_high:
         found.append(_approach(integrand, variable, high, -1, middle, symbols))
     elif middle != high:
-        found.append(_Piece(compiled(integrand, symbols, variable), ball_function(middle, ()), ball_function(high, ())))
+        found.append(_regular(integrand, variable, middle, high, symbols))
     return tuple(found)
+
+
+def _regular(
+    integrand: sp.Expr, variable: sp.Symbol, low: sp.Expr, high: sp.Expr, symbols: tuple[sp.Symbol, ...]
+) -> _Piece:
+    """A piece between two ends without trouble, moved to [0, 1]: ends that are no dyadic numbers are balls, and the
+    subdivision would not end before it had tried to narrow them.
+    """
+    length = high - low
+    moved = integrand.xreplace({variable: low + length * _UNIT}) * length
+    return _Piece(compiled(moved, symbols, _UNIT), ball_function(sp.S.Zero, ()), ball_function(sp.S.One, ()))
 
 
 def _middle(low: sp.Expr, high: sp.Expr) -> sp.Expr:

@@ -8,6 +8,7 @@ import mpmath
 import sympy as sp
 
 from ratfit._condition import AbstractCondition, Limit, describe
+from ratfit._deadline import TimeLimit
 from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Checked
 from ratfit._fraction import presentable
@@ -23,6 +24,9 @@ from ratfit._verify.numerically import numerical_residual
 
 TOLERANCE = mpmath.mpf("1e-30")
 """A residual at 50 digits below this, relative to the size of the demand, counts as zero."""
+
+GUESS_SECONDS = 3.0
+"""How long the proof of a guessed closed form may take."""
 
 NUMERICAL = mpmath.mpf("1e-40")
 """The same for conditions that are kept by numbers to their last digits, and not by algebra."""
@@ -61,10 +65,13 @@ def _verified_numbers(system: System, candidate: Reduced, numbers: Numbers) -> C
 
     Conditions that algebra keeps whatever the numbers are checked as ever, the others to NUMERICAL.
     """
+    looks = ""
     if numbers.guess is not None:
-        guessed = verify(system, numbers.guess)
-        if not guessed.reason:
-            return guessed
+        looks = f"; looks like {_plain(system, numbers.guess)} (numerical, not proved)"
+        with TimeLimit(GUESS_SECONDS):
+            guessed = verify(system, numbers.guess)
+            if not guessed.reason:
+                return guessed
     if numbers.table is not None:
         return _verified_table(system, candidate, numbers, numbers.table)
     checked = tuple(
@@ -75,7 +82,7 @@ def _verified_numbers(system: System, candidate: Reduced, numbers: Numbers) -> C
     )
     expression = shown(candidate, system.problem.variable)
     reason = _failure(checked, candidate.common) or _pole(system, candidate.denominator)
-    return Candidate(expression, {}, checked, reason, numbers.certificate)
+    return Candidate(expression, {}, checked, reason, numbers.certificate + looks)
 
 
 def _verified_table(system: System, candidate: Reduced, numbers: Numbers, table: Table) -> Candidate:
@@ -85,10 +92,20 @@ def _verified_table(system: System, candidate: Reduced, numbers: Numbers, table:
     nodes = [rows[0], rows[len(rows) // 2], rows[-1]]
     checked = tuple(_check_number(system, c, d, candidate, nodes) for c, d in system.pairs)
     middles = [{p: (a[p] + b[p]) / 2 for p in table.parameters} for a, b in zip(rows, rows[1:], strict=False)]
-    worst = max(numerical_residual(system, c, d, expression, middles[:: max(1, len(middles) // 4)]) for c, d in system.pairs)
+    worst = max(
+        numerical_residual(system, c, d, expression, middles[:: max(1, len(middles) // 4)]) for c, d in system.pairs
+    )
     words = f"{numbers.certificate}, where the conditions hold to {mpmath.nstr(worst, 2)}"
     reason = _failure(checked, sp.S.One) or _pole(system, candidate.denominator)
-    return Candidate(candidate.factor * decimal(candidate.numerator / candidate.denominator), {}, checked, reason, words, table)
+    return Candidate(
+        candidate.factor * decimal(candidate.numerator / candidate.denominator), {}, checked, reason, words, table
+    )
+
+
+def _plain(system: System, guess: Solution) -> sp.Expr:
+    candidate = without_common_factors(system.shape.factor, guess, system.problem.variable)
+    parts = candidate.factor, candidate.numerator, candidate.denominator
+    return presentable(*parts, system.problem.variable, _middle(system))
 
 
 def _check_number(

@@ -26,8 +26,8 @@ MAX_DEGREE = 20
 class Card:
     """A problem, the formula that was published for it, and where.
 
-    `published` is the printed formula as an expression of the problem's variable, parameters and choices; `printed`
-    its text. `settings` are the parameter values to measure with, as the source's figures have them. `epsilon`
+    `published` is the printed formula as an expression of the problem's variable, parameters and choices, None where
+    there is none; `printed` its text. `settings` are the parameter values to measure with, as the source's figures have them. `epsilon`
     and `gamma` are the source's figures as numbers (0.014, 2.3), None where it gives none; `operations` its count.
     `degree` is None, or the degree of a card that takes `--degree`: a Pade table at the place of its first condition.
     """
@@ -37,7 +37,7 @@ class Card:
     source: str
     place: str
     printed: str
-    published: sp.Expr
+    published: sp.Expr | None
     aliases: tuple[str, ...] = ()
     note: str = ""
     settings: tuple[Mapping[str, sp.Expr], ...] = ()
@@ -109,14 +109,14 @@ def _read(name: str) -> Card:
     problem = problem_of(tables, name)
     symbols: dict[str, sp.Expr] = {s.name: s for s in (problem.variable, *problem.parameters)}
     symbols |= {n: sp.Symbol(n, real=True) for n in problem.choice}
-    printed = about.pop("published")
+    printed = about.pop("published", "")
     settings = tuple(
         {n: parse_expression(v, {}, f"card {name}") for n, v in s.items()} for s in about.pop("settings", [])
     )
     return Card(
         problem=problem,
         printed=printed,
-        published=parse_expression(printed, symbols, f"card {name}, published"),
+        published=parse_expression(printed, symbols, f"card {name}, published") if printed else None,
         settings=settings,
         aliases=tuple(about.pop("aliases", ())),
         **about,

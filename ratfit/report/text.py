@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import sympy as sp
+
 from ratfit._condition import describe
 from ratfit._field import is_zero
 from ratfit._fit import Checked, Fit
 from ratfit._problem import Problem
 from ratfit._problem_text import form_table
+from ratfit._solver import Table
 from ratfit.gallery import Card
 from ratfit.report.unicode import lines as formula_lines
 
 WIDTH = 110
+DRAWN = 10
+"""Digits of a decimal in a drawn formula and in a table; the fit itself has all that are known."""
+
 MARKS = {True: ("✓", "ok"), False: ("✗", "NO"), None: ("?", "??")}
 
 
@@ -48,6 +54,9 @@ def _headline(fit: Fit) -> str:
         return f"no answer ({fit.route} route)"
     if fit.expression is None and fit.status in ("family", "several"):
         return f"not unique ({fit.route} route)"
+    if fit.route == "nonlinear" and fit.expression is not None:
+        found = "one answer" if fit.status == "unique" else f"{len(fit.candidates)} answers"
+        return f"{found} found (nonlinear route: all found, which need not be all there are)"
     words = {
         "unique": "one answer",
         "family": f"a family, {', '.join(map(str, fit.free))} free",
@@ -60,10 +69,13 @@ def _headline(fit: Fit) -> str:
 
 
 def _formula_lines(fit: Fit, unicode: bool) -> list[str]:
-    drawn = [f"    {line}" for line in formula_lines(fit.expression)] if unicode else []
+    assert fit.expression is not None
+    drawn = [f"    {line}" for line in formula_lines(rounded(fit.expression))] if unicode else []
     if any(len(line) > WIDTH for line in drawn):
         drawn = []  # a terminal would break the lines and leave no fraction to see
     lines = ["", *drawn, *([""] if drawn else []), f"  fit         {fit.expression}"]
+    if fit.candidates[0].certificate:
+        lines += [f"  proof       {fit.candidates[0].certificate}"]
     if fit.problem.form.support is not None:
         low, high = fit.problem.form.support
         lines.append(f"  support     [{low}, {high}], {fit.problem.form.outside} outside")
@@ -74,8 +86,24 @@ def _formula_lines(fit: Fit, unicode: bool) -> list[str]:
     return lines
 
 
+def rounded(expression: sp.Expr) -> sp.Expr:
+    """The expression with its decimals cut to DRAWN digits, for the eye."""
+    return expression.xreplace({f: sp.Float(f, DRAWN) for f in expression.atoms(sp.Float)})
+
+
 def _candidate_lines(fit: Fit) -> list[str]:
-    return [f"  or          {c.expression}" for c in fit.candidates[1:]]
+    lines = [] if fit.expression is not None else [f"  found       {c.expression}" for c in fit.candidates[:1]]
+    for candidate in fit.candidates[1:]:
+        lines.append(f"  or          {candidate.expression}")
+        lines += [f"              {candidate.certificate}"] if candidate.certificate else []
+    return lines + [line for c in fit.candidates if c.table is not None for line in _table_lines(c.table)]
+
+
+def _table_lines(table: Table) -> list[str]:
+    """Coefficients at the nodes of the parameters, rounded for the eye."""
+    head = [*(p.name for p in table.parameters), *table.columns]
+    rows = [[sp.sstr(sp.N(v, DRAWN)) for v in (*node, *row)] for node, row in zip(table.nodes, table.rows, strict=True)]
+    return ["", "  table", *(f"    {line}" for line in aligned([head, *rows]))]
 
 
 def _condition_line(checked: Checked, unicode: bool) -> str:
@@ -109,7 +137,7 @@ def agreement(fit: Fit, card: Card) -> str:
 
 def equals_published(fit: Fit, card: Card) -> bool:
     """Whether some accepted candidate is the published formula, as functions of variable, parameters and free names."""
-    for candidate in fit.candidates:
+    for candidate in fit.candidates if card.published is not None else ():
         by_name = {s.name: s for s in candidate.expression.free_symbols}
         published = card.published.xreplace({s: by_name.get(s.name, s) for s in card.published.free_symbols})
         if is_zero(candidate.expression - published):

@@ -27,7 +27,7 @@ class Root:
         """What is proved."""
         if self.radius is None:
             return f"not certified: {self.reason}"
-        return f"a true root lies within {self.radius} of these numbers{f' ({self.reason})' if self.reason else ''}"
+        return f"certified by balls: {self.reason}"
 
 
 def certified_root(residuals: Residuals, start) -> Root | None:

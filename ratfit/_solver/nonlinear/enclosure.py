@@ -66,7 +66,8 @@ def _slope(expression: sp.Expr, unknown: sp.Symbol) -> sp.Expr:
     found = sp.diff(expression, unknown)
     if found.has(sp.Derivative):
         raise RatfitError(f"no ball arithmetic for the derivative of {expression} by {unknown}")
-    return found
+    # Over one denominator what cancels at an infinite end cancels, and a ball there is narrow.
+    return sp.together(found) if found.is_rational_function() else found
 
 
 def _total(terms: Sequence[Term], unknowns: Sequence[arb]) -> arb:

@@ -17,7 +17,10 @@ AGREES = mpmath.mpf(10) ** -40
 
 
 def recognised_function(
-    parameter: sp.Symbol, places: Sequence[sp.Rational], values: Sequence[sp.Rational], constants: Sequence[sp.Expr] = ()
+    parameter: sp.Symbol,
+    places: Sequence[sp.Rational],
+    values: Sequence[sp.Rational],
+    constants: Sequence[sp.Expr] = (),
 ) -> sp.Expr | None:
     """A rational function of a parameter, or of its square root, that takes the values at the places to 40 digits.
 
@@ -48,7 +51,9 @@ def _rational_function(
     n = above + below + 1
     for fixed in range(below + 1):
         free = [j for j in range(below + 1) if j != fixed]
-        rows = [[p**i for i in range(above + 1)] + [-v * p**j for j in free] for p, v in zip(points, values, strict=True)]
+        rows = [
+            [p**i for i in range(above + 1)] + [-v * p**j for j in free] for p, v in zip(points, values, strict=True)
+        ]
         right = [v * p**fixed for p, v in zip(points, values, strict=True)]
         step = max(1, len(points) // n)
         chosen = list(range(0, len(points), step))[:n]
@@ -58,7 +63,10 @@ def _rational_function(
             )
         except (ZeroDivisionError, ValueError):
             continue
-        misfits = (mpmath.fsum(c * e for c, e in zip(solution, row, strict=True)) - r for row, r in zip(rows, right, strict=True))
+        misfits = (
+            mpmath.fsum(c * e for c, e in zip(solution, row, strict=True)) - r
+            for row, r in zip(rows, right, strict=True)
+        )
         if all(abs(misfit) < AGREES * (1 + abs(r)) for misfit, r in zip(misfits, right, strict=True)):
             bottom = list(solution[above + 1 :])
             bottom.insert(fixed, mpmath.mpf(1))

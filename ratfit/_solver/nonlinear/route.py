@@ -97,7 +97,9 @@ def _guess(assembly: Assembly, numbers: Sequence[sp.Rational]) -> Solution | Non
 
 
 def _constants(assembly: Assembly) -> list[sp.Expr]:
-    """The irrational numbers that occur in the residuals."""
-    plains = [part.plain for part in assembly.residuals.parts]
-    found = set().union(*(e.atoms(sp.NumberSymbol, sp.Function, sp.Pow) for e in plains))
-    return sorted((c for c in found if c.is_number and c.is_real and not c.is_Rational), key=sp.count_ops)[:3]
+    """The irrational numbers that occur in the residuals, the plainest few."""
+    residuals = assembly.residuals
+    everything = [part.plain for part in residuals.parts] + [m.integrand for p in residuals.parts for m in p.moments]
+    found = set().union(*(e.atoms(sp.NumberSymbol, sp.Function, sp.Pow) for e in everything))
+    irrational = (c for c in found if c.is_number and c.is_real and not c.is_Rational and not 1 / c in found)
+    return sorted(irrational, key=lambda c: (sp.count_ops(c), str(c)))[:3]

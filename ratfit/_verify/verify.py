@@ -25,7 +25,7 @@ from ratfit._verify.numerically import numerical_residual
 TOLERANCE = mpmath.mpf("1e-30")
 """A residual at 50 digits below this, relative to the size of the demand, counts as zero."""
 
-GUESS_SECONDS = 3.0
+GUESS_SECONDS = 2.0
 """How long the proof of a guessed closed form may take."""
 
 NUMERICAL = mpmath.mpf("1e-40")

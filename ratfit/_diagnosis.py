@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import combinations
 
 import sympy as sp
+from sympy.polys.matrices import DomainMatrix
 
 from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivative, Value, describe
 from ratfit._deadline import TimeLimit
@@ -15,7 +16,7 @@ from ratfit._fit import Candidate, Fit
 from ratfit._jets import same
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
-from ratfit._rows import rows
+from ratfit._rows import Row, rows, rows_of
 from ratfit._solver import Undecided, pick, solve
 from ratfit._system import System, completed, equations, of_pairs
 from ratfit._verify import verify
@@ -37,7 +38,7 @@ def contradiction(system: System) -> str:
 
 def explained(fit: Fit, route: str) -> Fit:
     """The honest no with its reasons: poles, or a smallest set of conditions that no fraction keeps together."""
-    reasons = [f"{c.expression}: {c.reason}" for c in fit.rejected]
+    reasons = [f"{c.expression}: {_unattainable(c)}{c.reason}" for c in fit.rejected]
     if any(c.conditions and all(k.holds for k in c.conditions) for c in fit.rejected):
         reasons.append(
             "the conditions hold, but the fit has a pole: narrow the parameters' ranges or the domain, "
@@ -101,11 +102,11 @@ def _consistent(problem: Problem, route: str) -> bool:
         return True
 
 
-def unattainable(candidate: Candidate) -> str:
-    """The nodes at which a candidate's common factor, cancelled, left a condition unkept, in words."""
+def _unattainable(candidate: Candidate) -> str:
+    """The nodes at which numerator and denominator vanish together, so that a condition there is not kept, in words."""
     failed = [c.condition for c in candidate.conditions if c.holds is False]
     nodes = sorted({str(c.at) for c in failed if isinstance(c, AbstractPointCondition)})
-    return f"unattainable in this form at {', '.join(nodes)}: " if nodes else ""
+    return f"unattainable node {', '.join(nodes)}: " if nodes and "cancels" in candidate.reason else ""
 
 
 def advice(system: System, fit: Fit) -> tuple[str, ...]:
@@ -122,17 +123,24 @@ def advice(system: System, fit: Fit) -> tuple[str, ...]:
 def _for_free(system: System) -> list[AbstractCondition]:
     """Conditions that follow from the others, the last stated first to go."""
     whole = completed(system)
-    everything = rows(whole)
-    rank = numerical_rank(everything)
-    if rank == len(everything):
-        return []
-    kept, found = whole.pairs, []
-    for condition, demand in reversed(system.pairs):
-        rest = [pair for pair in kept if pair[0] != condition]
-        if len(rest) < len(kept) and rest and numerical_rank(rows(of_pairs(whole, rest))) == rank:
+    kept = {c: rows_of(whole, c, d) for c, d in whole.pairs}
+    rank = _rank(kept.values())
+    found: list[AbstractCondition] = []
+    for condition in reversed(system.conditions):
+        rest = {c: r for c, r in kept.items() if c != condition}
+        if rank == sum(map(len, kept.values())):
+            break
+        if len(rest) < len(kept) and _rank(rest.values()) == rank:
             kept = rest
             found.append(condition)
     return found[::-1]
+
+
+def _rank(groups: Iterable[list[Row]]) -> int:
+    everything = [row for group in groups for row in group]
+    if all(e.is_Rational for row in everything for e in row):
+        return DomainMatrix.from_list_sympy(len(everything), len(everything[0]), everything).to_field().rank()
+    return numerical_rank(everything)
 
 
 def _completing(system: System, missing: int, names: str) -> list[str]:

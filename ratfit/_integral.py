@@ -18,6 +18,10 @@ UNFINISHED = (BasePolynomialError, NotImplementedError, ValueError, TypeError, A
 """What sympy raises from inside an integral that it cannot do."""
 
 
+class Divergent(RatfitError):
+    """An integral that every member of a form has, and that is infinite."""
+
+
 def integral_parts(problem: Problem, condition: Integral) -> tuple[tuple[sp.Expr, sp.Expr], sp.Expr]:
     """The range of an integral condition that lies on the fit's support, and what the value outside it adds."""
     low, high = condition.range(problem.domain)
@@ -46,6 +50,10 @@ def integrated(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) 
     value = sp.nan
     with TimeLimit(INTEGRAL_SECONDS), suppress(*UNFINISHED):
         value = sp.integrate(sp.expand(integrand), (x, *over))
+    if value.is_infinite:
+        raise Divergent(
+            f"the integral of {integrand} over [{over[0]}, {over[1]}] diverges: choose another weight, range or form"
+        )
     if value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo):
         raise RatfitError(
             f"the integral of {integrand} over [{over[0]}, {over[1]}] has no closed form; choose another weight"

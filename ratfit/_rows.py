@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ratfit._condition import JET, AbstractPointCondition, Equation, Integral, Limit
+from ratfit._condition import JET, AbstractCondition, AbstractPointCondition, Equation, Integral, Limit
 from ratfit._field import Field
 from ratfit._integral import closed_integral, integral_parts, integrated
 from ratfit._jets import same
@@ -26,19 +26,23 @@ def rows(system: System, raised: Mapping[Limit, int] = NOTHING) -> list[Row]:
     denominator that is constant in the variable every condition is linear as it stands. `raised` says for a limit how
     many orders more the denominator is known to vanish there. Raises RatfitError for a condition that is not linear.
     """
-    found: list[Row] = []
-    for condition, demand in system.pairs:
-        if isinstance(condition, Integral):
-            found.append(_integral_row(system, condition, demand))
-        elif isinstance(condition, Limit):
-            found += limit_rows(system, condition, demand, raised.get(condition, 0))[0]
-        elif isinstance(condition, Equation):
-            found += _equation_rows(system, condition)
-        elif isinstance(condition, AbstractPointCondition) and system.plain and is_finite_at(system, condition.at):
-            found.append(_plain_row(system, condition, demand))
-        elif isinstance(condition, AbstractPointCondition):
-            found += _hermite_rows(system, condition, demand)
-    return found
+    return [row for condition, demand in system.pairs for row in rows_of(system, condition, demand, raised)]
+
+
+def rows_of(
+    system: System, condition: AbstractCondition, demand: sp.Expr, raised: Mapping[Limit, int] = NOTHING
+) -> list[Row]:
+    """The rows of one condition among those of its system."""
+    if isinstance(condition, Integral):
+        return [_integral_row(system, condition, demand)]
+    if isinstance(condition, Limit):
+        return limit_rows(system, condition, demand, raised.get(condition, 0))[0]
+    if isinstance(condition, Equation):
+        return _equation_rows(system, condition)
+    assert isinstance(condition, AbstractPointCondition)
+    if system.plain and is_finite_at(system, condition.at):
+        return [_plain_row(system, condition, demand)]
+    return _hermite_rows(system, condition, demand)
 
 
 def _plain_row(system: System, condition: AbstractPointCondition, demand: sp.Expr) -> Row:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import sympy as sp
 
@@ -92,6 +92,7 @@ def of_pairs(system: System, pairs: list[Demanded]) -> System:
     return replace(system, conditions=tuple(c for c, _ in pairs), demands=tuple(d for _, d in pairs))
 
 
+@lru_cache(maxsize=100)
 def columns(shape: Shape) -> tuple[list[tuple[sp.Expr, sp.Expr]], bool]:
     """Numerator and denominator of each unknown, when both are sums of unknowns times functions of the variable.
 

@@ -47,7 +47,8 @@ class Limit(AbstractCondition):
     def what(self) -> str:
         """What the limit is of, "f" or "(f - x/2)*x", as text."""
         inner = "f" if self.minus == 0 else f"f - ({self.minus})" if self.minus.is_Add else f"f - {self.minus}"
-        scale = f"({self.scale})" if self.scale.is_Add else str(self.scale)
+        bare = not self.scale.is_Add and sp.fraction(self.scale)[1] == 1
+        scale = str(self.scale) if bare else f"({self.scale})"
         return inner if self.scale == 1 else f"({inner})*{scale}" if self.minus != 0 else f"{inner}*{scale}"
 
     def demanded(self, target: Target | None) -> sp.Expr:

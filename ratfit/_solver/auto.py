@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 import sympy as sp
 
 from ratfit._condition import Equation, Integral, Limit
+from ratfit._integral import Divergent
 from ratfit._parse import RatfitError
 from ratfit._rows import rows
 from ratfit._solver.linear import solve_linear
@@ -56,6 +57,8 @@ def is_linear(system: System) -> bool:
         return True
     try:
         rows(completed(system))
+    except Divergent:
+        raise
     except RatfitError:
         return False
     return True

@@ -70,19 +70,27 @@ def _derived(problem: Problem, route: str, known: _Known, timeout: float | None,
         return Fit(problem, "inconsistent", taken, reasons=(clash,))
     try:
         _collect(system, solve(system, taken, seed), known, taken == route or taken != "polynomial", timeout)
-    except (Undecided, Related) as error:
-        if taken != "polynomial" or route == taken:
+    except (Undecided, RatfitError) as error:  # Related is a RatfitError too
+        known.route, second = ("nonlinear", True) if (taken, route) == ("polynomial", "auto") else (taken, False)
+        if not (second and _found_by_starts(system, known, timeout, seed)):
+            if isinstance(error, RatfitError) and not isinstance(error, Related):
+                raise
             return Fit(problem, "rejected", taken, reasons=(str(error),))
-        known.route = taken = "nonlinear"
-        try:
-            _collect(system, solve(system, taken, seed), known, True, timeout)
-        except (Undecided, Related, RatfitError):
-            return Fit(problem, "rejected", "polynomial", reasons=(str(error),))
+        taken = known.route
     fit = _assembled(problem, taken, _distinct(known.candidates), _shown_equations(system, taken))
     if not fit.candidates:
         return explained(fit, route if taken != "nonlinear" else taken)
     _check_choice(fit, system)
     return replace(fit, advice=advice(system, fit)) if taken == "linear" else fit
+
+
+def _found_by_starts(system: System, known: _Known, timeout: float | None, seed: int) -> bool:
+    """Whether the nonlinear route finds what the polynomial one could not."""
+    try:
+        _collect(system, solve(system, "nonlinear", seed), known, True, timeout)
+    except (Undecided, RatfitError):
+        return False
+    return any(not candidate.reason for candidate in known.candidates)
 
 
 def _collect(

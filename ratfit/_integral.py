@@ -89,7 +89,7 @@ def closed_integral(above: sp.Expr, below: sp.Expr, x: sp.Symbol, over: tuple[sp
     with TimeLimit(INTEGRAL_SECONDS), suppress(*UNFINISHED):
         primitive = sp.integrate(sp.apart(integrand, x), x)
         ends = [sp.limit(primitive, x, end) if end.is_infinite else primitive.subs(x, end) for end in over]
-        value = ends[1] - ends[0]
+        value = sp.expand(ends[1] - ends[0])  # logarithms of negative numbers cancel where no pole lies between
     if value.has(sp.Integral, sp.nan, sp.oo, sp.zoo, sp.I):
         raise RatfitError(f"the integral of {integrand} over [{over[0]}, {over[1]}] is not found in closed form")
     return value

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache, partial
 
 import sympy as sp
 
 from ratfit._condition import JET, AbstractCondition, AbstractPointCondition, Equation, Integral, Limit
 from ratfit._field import Field
+from ratfit._form import Shape
 from ratfit._integral import closed_integral, integral_parts, integrated
 from ratfit._jets import same
 from ratfit._series import Laurent, factor_series, laurent, local_coordinate, taylor
@@ -93,11 +95,12 @@ def limit_rows(system: System, limit: Limit, demand: sp.Expr, raised: int) -> tu
     are its series coefficients up to the order of Q's zero: the lowest that the columns have, raised while the rows
     themselves force that coefficient of Q to vanish, and `raised` times more.
     """
-    local = _local(system, limit)
-    order = lowest = min(map(_valuation, local.series(0).below))
+    side = -1 if same(limit.at, system.problem.support()[1]) else 1
+    series_to = partial(_series, system.shape, system.problem.variable, limit, side)
+    order = lowest = min(map(_valuation, series_to(0).below))
     widest = lowest + 2 * len(columns(system.shape)[0])
     while True:
-        series = local.series(order)
+        series = series_to(order)
         found = series.rows(demand, order)
         lead = [b.at(order) for b in series.below]
         forced = order < widest and _spans(found, lead)
@@ -124,26 +127,20 @@ class _Series:
         return [row for row in found if any(row)]
 
 
-@dataclass(frozen=True)
-class _Local:
-    """The same in the local coordinate, as expressions."""
-
-    above: list[sp.Expr]
-    below: list[sp.Expr]
-    minus: list[sp.Expr]
-
-    def series(self, order: int) -> _Series:
-        return _Series(*(tuple(laurent(e, order) for e in group) for group in (self.above, self.below, self.minus)))
+@lru_cache(maxsize=200)
+def _series(shape: Shape, x: sp.Symbol, limit: Limit, side: int, order: int) -> _Series:
+    return _Series(*(tuple(laurent(e, order) for e in group) for group in _local(shape, x, limit, side)))
 
 
-def _local(system: System, limit: Limit) -> _Local:
-    pairs, _ = columns(system.shape)
-    scaled = limit.scale * system.shape.factor
+@lru_cache(maxsize=50)
+def _local(shape: Shape, x: sp.Symbol, limit: Limit, side: int) -> tuple[list[sp.Expr], ...]:
+    """The same as expressions of the local coordinate; kept, for a limit's rows are asked for again and again."""
+    pairs, _ = columns(shape)
+    scaled = limit.scale * shape.factor
     parts = [scaled * a for a, _ in pairs] + [b for _, b in pairs] + [limit.minus * limit.scale * b for _, b in pairs]
-    side = -1 if same(limit.at, system.problem.support()[1]) else 1
-    moved = local_coordinate(parts, system.problem.variable, limit.at, side)
+    moved = local_coordinate(parts, x, limit.at, side)
     n = len(pairs)
-    return _Local(moved[:n], moved[n : 2 * n], moved[2 * n :])
+    return moved[:n], moved[n : 2 * n], moved[2 * n :]
 
 
 def _valuation(series: Laurent) -> float:

@@ -84,7 +84,7 @@ class Equation(AbstractCondition):
         check_inside("equation at", self.at, domain, what)
 
     def expressions(self) -> tuple[sp.Expr, ...]:
-        return self.at, self.residual.subs(dict.fromkeys(JET, sp.S.One), simultaneous=True)
+        return self.at, sp.Add(*(self.residual.free_symbols - set(JET)))
 
 
 def _in_jet(residual: sp.Expr) -> sp.Expr:

@@ -143,9 +143,17 @@ def _with_and_without(polynomials, place, symbol, unknowns) -> Iterator[Assignme
     value = -rest / slope
     remaining = [u for u in unknowns if u != symbol]
     for assignment in solutions([e.subs(symbol, value) for e in others], remaining):
-        if not Field([slope.subs(assignment)]).is_zero(slope.subs(assignment)):
+        if not _vanishes(slope.subs(assignment)):
             yield {**assignment, symbol: _normal(value.subs(assignment))}
     yield from solutions([*others, slope, rest], unknowns)
+
+
+def _vanishes(value: sp.Expr) -> bool:
+    """Whether a value is zero; one that is not real, or not for all parameters, belongs to a branch of its own."""
+    try:
+        return Field([value]).is_zero(value)
+    except RatfitError:
+        return False
 
 
 def _linear_in(polynomials, unknowns):
@@ -172,7 +180,10 @@ def _roots(polynomial: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
         root = sp.sqrt(sp.factor(sp.expand(b**2 - 4 * a * c)))
         return [_normal((-b + sign * root) / (2 * a)) for sign in (1, -1)]
     if all(c.is_Rational for c in coefficients):
-        return sp.Poly(polynomial, symbol).all_roots(radicals=False)
+        _, factors = sp.Poly(polynomial, symbol).factor_list()
+        if len(factors) > 1:
+            return [root for factor, _ in factors for root in _roots(factor.as_expr(), symbol)]
+        return [-coefficients[1] / coefficients[0]] if degree == 1 else factors[0][0].all_roots(radicals=False)
     roots = sp.roots(sp.Poly(polynomial, symbol))
     if sum(roots.values()) == degree:
         return list(roots)

@@ -1,0 +1,295 @@
+"""Limits, integrals, differential equations, structure, many starts: each answer worked out by hand."""
+
+from __future__ import annotations
+
+import time
+
+import mpmath
+import pytest
+import sympy as sp
+
+import ratfit as rf
+from ratfit._inline import Words, problem_of_words
+from ratfit._solver.nonlinear import search
+
+HALF = sp.Rational(1, 2)
+
+
+def fit_of(target: str, on: str, form: str | None = None, *, route: str = "auto", **stated) -> rf.Fit:
+    return rf.derive(
+        problem_of_words(target, Words(on=tuple(on.split()), form=form, **stated)), route=route, timeout=30
+    )
+
+
+def same(found: sp.Expr, expected: str) -> bool:
+    """Symbolically, with symbols matched by name."""
+    names = {s.name: s for s in found.free_symbols}
+    return sp.simplify(found - sp.sympify(expected, locals=names)) == 0
+
+
+# name -> (target, domain, form, what is stated), route, answer
+ANSWERS = {
+    "asymptote": (
+        (
+            "1 - exp(-k*x)",
+            "0 oo",
+            "1/1",
+            {"value": ["0"], "derivative": ["0"], "limit": ["oo"], "parameter": ["k=1:9"]},
+        ),
+        "linear",
+        "k*x/(1 + k*x)",
+    ),
+    "oblique asymptote": (
+        ("sqrt(1 + x**2)", "0 oo", "2/1", {"value": ["0"], "derivative": ["0"], "limit": ["oo;minus=x"]}),
+        "linear",
+        "(x**2 + x + 1)/(x + 1)",
+    ),
+    "two terms of an asymptote": (
+        ("x", "0 oo", "1/1", {"value": ["0;equals=2"], "limit": ["oo;equals=1", "oo;scale=x;minus=1;equals=3"]}),
+        "linear",
+        "(x + 6)/(x + 3)",
+    ),
+    "a limit that lowers the degree": (
+        ("x", "-1 1", "1/2", {"value": ["0;equals=1", "1;equals=1/2"], "limit": ["oo;equals=2"]}),
+        "linear",
+        "(3 - 2*x)/(3 - x)",
+    ),
+    "limit at minus infinity": (
+        ("x", "-oo 0", "1/1", {"value": ["0;equals=0", "-1;equals=1"], "limit": ["-oo;equals=2"]}),
+        "linear",
+        "2*x/(x - 1)",
+    ),
+    "residue": (
+        ("x", "0 1", "1/1", {"value": ["0;equals=1"], "limit": ["1;scale=x-1;equals=2"]}),
+        "linear",
+        "(1 - 3*x)/(1 - x)",
+    ),
+    "residue of the target's own pole": (
+        ("1/sin(x)", "0 1", "1/1", {"limit": ["0;scale=x", "0;minus=1/x"]}),
+        "linear",
+        "1/x",
+    ),
+    "growth like a root": (
+        ("x", "0 1", "1", {"factor": "sqrt(x)", "limit": ["0;scale=1/sqrt(x);equals=2"], "value": ["1;equals=5"]}),
+        "linear",
+        "sqrt(x)*(2 + 3*x)",
+    ),
+    "pole of third order as a factor": (
+        ("x", "1 3", "1", {"factor": "1/(x-1)**3", "limit": ["1;scale=(x-1)**3;equals=2"], "value": ["2;equals=5"]}),
+        "linear",
+        "(3*x - 1)/(x - 1)**3",
+    ),
+    "differential equation of a polynomial": (
+        ("x", "0 1", "3", {"value": ["0;equals=1"], "equation": ["y' - y;at=0;order=2"]}),
+        "linear",
+        "1 + x + x**2/2 + x**3/6",
+    ),
+    "equation with the variable in it": (
+        ("x", "0 2", "2", {"value": ["1;equals=3"], "equation": ["x*y' - 2*y;at=1;order=1"]}),
+        "linear",
+        "3*x**2",
+    ),
+    "nonlinear equation, known start": (
+        ("tanh(x)", "0 oo", "2/2", {"value": ["0"], "equation": ["y' - 1 + y**2;at=0;order=2"], "limit": ["oo"]}),
+        "linear",
+        "x*(x + 3)/(x**2 + x + 3)",
+    ),
+    "logistic": (
+        (
+            "x",
+            "0 oo",
+            "1/1",
+            {"value": ["0;equals=1/2"], "equation": ["y' - y*(1 - y);at=0"], "limit": ["oo;equals=1"]},
+        ),
+        "linear",
+        "(1 + x)/(2 + x)",
+    ),
+    "equation where nothing is known": (
+        ("x", "0 1", "1/1", {"value": ["0;equals=1"], "equation": ["y' - y;at=1;order=1"]}),
+        "polynomial",
+        "3*(x + 1)/(3 - x)",
+    ),
+    "integral over a fixed denominator": (
+        ("x", "0 1", "a/(1+x) + b", {"unknowns": "a,b", "value": ["0;equals=2"], "integral": ["equals=1+log(2)"]}),
+        "linear",
+        "1/(1 + x) + 1",
+    ),
+    "total and mean on a half line": (
+        (
+            "x",
+            "0 oo",
+            "a/(1+x)**3 + b/(1+x)**4",
+            {"unknowns": "a,b", "integral": ["equals=1", "weight=x;equals=2"]},
+        ),
+        "linear",
+        "6*x/(1 + x)**4",
+    ),
+    "three moments": (
+        ("x", "0 1", "2", {"integral": ["equals=1", "weight=x;equals=1/2", "weight=x**2;equals=1/3"]}),
+        "linear",
+        "1",
+    ),
+    "a logarithm for an integral": (
+        ("x", "0 1", "0/1", {"value": ["0;equals=1"], "integral": ["equals=log(3)/2"]}),
+        "nonlinear",
+        "1/(1 + 2*x)",
+    ),
+    "the same along a parameter": (
+        ("x", "0 1", "0/1", {"value": ["0;equals=1"], "integral": ["equals=log(1+m)/m"], "parameter": ["m=1/2:2"]}),
+        "nonlinear",
+        "1/(1 + m*x)",
+    ),
+    "a kink in the weight": (
+        ("x", "0 1", "0/1", {"value": ["0;equals=1"], "integral": ["weight=Abs(x-1/2);equals=log(2)-log(3)/2"]}),
+        "nonlinear",
+        "1/(1 + 2*x)",
+    ),
+    "a root": (
+        ("x", "0 1", "sqrt(a*x+b)", {"unknowns": "a,b", "value": ["0;equals=1", "1;equals=2"]}),
+        "nonlinear",
+        "sqrt(3*x + 1)",
+    ),
+    "a power with an integral": (
+        ("x", "0 1", None, {"power": "x", "value": ["0;equals=1", "1;equals=2"], "integral": ["equals=6/5"]}),
+        "nonlinear",
+        "x**4 + 1",
+    ),
+    "shared coefficients": (
+        ("x", "0 1", "(a*x+b)/(b*x+a)", {"unknowns": "a,b", "value": ["0;equals=2"]}),
+        "linear",
+        "(x + 2)/(2*x + 1)",
+    ),
+    "odd by parity": (
+        ("x", "0 oo", "1/2", {"parity": "odd", "derivative": ["0;equals=2"], "limit": ["oo;scale=x;equals=1"]}),
+        "linear",
+        "2*x/(1 + 2*x**2)",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_answer(name):
+    (target, on, form, stated), route, expected = ANSWERS[name]
+    fit = fit_of(target, on, form, **stated)
+    assert fit.route == route and any(same(c.expression, expected) for c in fit.candidates), fit
+    assert all(c.holds for c in fit.conditions)
+
+
+def test_an_exponential_of_a_fraction_is_found_to_forty_digits():
+    """exp((a + b*x)/(1 + c*x)) with f(0) = 1, f'(0) = 1, f(1) = 2: a = 0, b = 1, 1 + c = 1/log(2)."""
+    fit = fit_of(
+        *("x", "0 1", "exp((a+b*x)/(1+c*x))"),
+        unknowns="a,b,c",
+        value=["0;equals=1", "1;equals=2"],
+        derivative=["0;equals=1"],
+    )
+    with mpmath.workdps(50):
+        true = mpmath.exp(mpmath.mpf("0.5") / (1 + (1 / mpmath.log(2) - 1) / 2))
+        found = sp.N(fit.expression.subs(fit.problem.variable, HALF), 48)
+        assert abs(true - mpmath.mpf(str(found))) < 1e-40
+    assert "exactly one root" in fit.candidates[0].certificate
+    assert all(c.holds and c.residual < 1e-40 for c in fit.conditions)
+
+
+def test_coefficients_along_a_parameter_hold_at_the_nodes_of_the_table():
+    """1/(1 + b*x) with the integral 1/2 + m/10: log(1 + b)/b = 1/2 + m/10."""
+    fit = fit_of("x", "0 1", "0/1", value=["0;equals=1"], integral=["equals=1/2+m/10"], parameter=["m=1/10:2"])
+    candidate = fit.candidates[0]
+    assert len(candidate.table.nodes) == 17 and "interpolated between" in candidate.certificate
+    expression, x = candidate.expression, fit.problem.variable
+    (m,) = candidate.table.parameters
+    for (node,) in candidate.table.nodes[::4]:
+        with mpmath.workdps(60):
+            wanted = mpmath.mpf(1) / 2 + mpmath.mpf(int(node.p)) / int(node.q) / 10
+            b = mpmath.findroot(lambda b, wanted=wanted: mpmath.log(1 + b) / b - wanted, 1)
+            found = sp.N(expression.subs({m: node, x: HALF}), 50)
+            assert abs(mpmath.mpf(str(found)) - 1 / (1 + b / 2)) < 1e-40
+
+
+def test_a_family_that_is_not_linear_says_how_many_conditions_are_missing():
+    fit = fit_of("exp(x)", "0 1", "2/2", value=["0"], integral=["weight=1", "weight=x"])
+    assert fit.expression is None and "2 coefficients open" in fit.reasons[0]  # 6 - 1 - 3
+
+
+def test_what_came_for_free_is_said():
+    fit = fit_of("x/(1+x)", "0 1", "1/1", value=["0", "1"], derivative=["0", "1"])
+    assert fit.status == "unique" and fit.advice == ("came for free, the other conditions imply it: derivative at 1",)
+
+
+def test_a_family_is_offered_conditions_that_single_out_one():
+    fit = fit_of("sin(x)", "0 pi/2", "2/2", value=["0", "pi/2"], derivative=["0"])
+    assert "b1, b2 free" in fit.advice[0]
+    assert '--derivative pi/2 --derivative "0;order=2"' in fit.advice[0]
+    whole = fit_of("sin(x)", "0 pi/2", "2/2", value=["0", "pi/2"], derivative=["0", "pi/2", "0;order=2"])
+    assert whole.status == "unique"  # the advice, taken
+
+
+def test_an_unattainable_node_is_named():
+    """Through (0, 1), (1, 1) goes no [1/1] but 1, which misses (2, 2)."""
+    fit = fit_of("x", "0 2", "1/1", value=["0;equals=1", "1;equals=1", "2;equals=2"])
+    assert fit.status == "rejected" and any("unattainable node 2" in reason for reason in fit.reasons)
+
+
+def test_out_of_time_keeps_what_was_found(monkeypatch):
+    chunks = search.search_chunks
+
+    def endless(residuals, **options):
+        yield from chunks(residuals, **options)
+        while True:
+            time.sleep(0.01)
+
+    monkeypatch.setattr(search, "search_chunks", endless)
+    words = Words(on=("0", "1"), form="0/1", value=["0;equals=1"], integral=["equals=log(3)/2"])
+    fit = rf.derive(problem_of_words("x", words), timeout=4)
+    assert fit.status == "timeout" and fit.expression is None
+    assert any(same(c.expression, "1/(1 + 2*x)") for c in fit.candidates)
+    assert "found so far: 1/(2*x + 1)" in fit.reasons[0]
+
+
+BAD = {
+    "scale of zero": (("x", "0 1", "1/1", {"limit": ["0;scale=0"]}), "scale of zero"),
+    "a limit that is infinite": (("exp(x)", "0 1", "1/1", {"limit": ["oo"], "value": ["0"]}), "not finite"),
+    "a limit that does not exist": (("sin(x)", "0 1", "1/1", {"limit": ["oo"], "value": ["0"]}), "does not exist"),
+    "two sides differ": (("Abs(x)/x", "-1 1", "1/1", {"limit": ["0"]}), "from the left"),
+    "a limit outside": (("x", "0 1", "1/1", {"limit": ["2"]}), "outside"),
+    "a limit beyond the support": (("x", "0 oo", "1/1", {"limit": ["oo;equals=1"], "support": ("0", "1")}), "support"),
+    "a divergent integral of the target": (("1/x", "0 1", "1/1", {"integral": ["weight=1"]}), "diverges"),
+    "a divergent integral of the form": (
+        ("x", "0 oo", "1", {"integral": ["weight=1;equals=1"], "value": ["0"]}),
+        "diverges",
+    ),
+    "an unknown function": (("x", "0 1", "1/1", {"equation": ["z' - y;at=0"]}), "not known here"),
+    "a derivative beyond the fourth": (("x", "0 1", "1/1", {"equation": ["y''''' - y;at=0"]}), "not known here"),
+    "no unknown function": (("x", "0 1", "1/1", {"equation": ["x - 1;at=0"]}), "holds no y"),
+    "an equation without a place": (("x", "0 1", "1/1", {"equation": ["y' - 1"]}), "at"),
+    "an equation outside": (("x", "0 1", "1/1", {"equation": ["y' - 1;at=3"]}), "outside"),
+    "an order that is no number": (("x", "0 1", "1/1", {"equation": ["y' - 1;at=0;order=x"]}), "whole number"),
+    "y is taken": (("y", "0 1", "1/1", {"equation": ["y' - 1;at=0"]}), "rename"),
+    "a prime elsewhere": (("x'", "0 1", "1/1", {"value": ["0"], "variable": "x"}), "quotes"),
+    "an unknown name": (("x", "0 1", "1/1", {"limit": ["0;scale=z"]}), "not declared"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input(name):
+    (target, on, form, stated), said = BAD[name]
+    with pytest.raises(rf.RatfitError, match=said) as caught:
+        fit_of(target, on, form, **stated)
+    assert "\n" not in str(caught.value)
+
+
+def test_conditions_in_python_say_what_they_refuse():
+    x = sp.Symbol("x")
+    y = sp.Function("y")(x)
+    assert rf.Equation(y.diff(x, 2) + y, 0).residual == rf.Equation("y'' + y", 0).residual
+    for bad in (
+        lambda: rf.Equation(y.diff(x, 5), 0),
+        lambda: rf.Equation(y + sp.Function("z")(x), 0),
+        lambda: rf.Equation("y' - 1", sp.oo),
+        lambda: rf.Equation("y' - 1", 0, order=-1),
+        lambda: rf.Limit(sp.I),
+        lambda: rf.Limit(0, scale=sp.oo),
+        lambda: rf.Limit(0, equals=sp.oo),
+    ):
+        with pytest.raises(rf.RatfitError):
+            bad()

@@ -17,6 +17,11 @@ class OutOfTime(BaseException):
     """A time limit has passed. Not an Exception: a broad handler inside a library must not swallow it."""
 
 
+_STARTING = threading.Lock()
+"""Held while a watching thread starts: until it runs, Python knows it by the number of the thread that starts it, and
+what is raised in that one would strike the newborn, which then never says that it has started."""
+
+
 class TimeLimit:
     """`with TimeLimit(seconds) as limit: ...` leaves the block once the time has passed; `limit.passed` says so.
 
@@ -34,7 +39,12 @@ class TimeLimit:
 
     def __enter__(self) -> TimeLimit:
         if self.seconds is not None:
-            threading.Thread(target=self._watch, args=[threading.get_ident()], daemon=True).start()
+            try:
+                with _STARTING:
+                    threading.Thread(target=self._watch, args=[threading.get_ident()], daemon=True).start()
+            except BaseException:  # an outer limit's, say: the block is not entered, so nobody will leave it
+                self._done.set()
+                raise
         return self
 
     def _watch(self, thread: int) -> None:
@@ -42,7 +52,7 @@ class TimeLimit:
         pause = self.seconds
         while not self._done.wait(pause):
             # The lock keeps a limit that passes at the very end of the block from striking whatever runs after it.
-            with self._lock:
+            with _STARTING, self._lock:
                 if not self._done.is_set():
                     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(self._raised))
             pause = AGAIN
@@ -50,13 +60,16 @@ class TimeLimit:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> bool:
-        while not self._done.is_set():
-            try:
-                with self._lock:
-                    self._done.set()
-                for _ in range(FLUSH):
-                    pass  # what was raised just before is delivered here
-            except self._raised:
-                kind = self._raised
+        try:
+            while not self._done.is_set():
+                try:
+                    with self._lock:
+                        self._done.set()
+                    for _ in range(FLUSH):
+                        pass  # what was raised just before is delivered here
+                except self._raised:
+                    kind = self._raised
+        finally:
+            self._done.set()  # also where an outer limit struck in here
         self.passed = kind is self._raised
         return self.passed

@@ -253,3 +253,21 @@ def test_plot_draws_on_the_axes_given_and_shows_nothing():
     assert axes.get_ylim()[1] < 20
     cut = plot_study(studied("tanh(x)", "0", "oo"))
     assert "cut" in cut.get_xlabel()
+
+
+def test_nested_time_limits_neither_hang_nor_stay_behind():
+    """An outer limit that strikes while an inner one starts once struck the inner's newborn thread."""
+    import threading
+
+    from ratfit._deadline import TimeLimit
+
+    for _ in range(150):
+        with TimeLimit(0.003) as limit:
+            while True:
+                with TimeLimit(10):
+                    pass
+        assert limit.passed
+    for thread in threading.enumerate():
+        if "_watch" in thread.name:
+            thread.join(2.0)
+            assert not thread.is_alive()

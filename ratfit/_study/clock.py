@@ -16,6 +16,9 @@ Found = TypeVar("Found")
 CALL_SECONDS = 1.0
 """How long one call may last: what sympy finds at all it mostly finds sooner."""
 
+MOMENT = 0.02
+"""Seconds in which nothing is worth starting."""
+
 # What sympy raises when it cannot do what it was asked; RatfitError is a ValueError.
 FAILURES = (
     *(NotImplementedError, ValueError, TypeError, RecursionError, AttributeError, ArithmeticError, LookupError),
@@ -38,6 +41,8 @@ class Clock:
     def attempt(self, call: Callable[[], Found], what: str = "", seconds: float = CALL_SECONDS) -> Found | None:
         """What the call returns; None where it fails, or runs out of time, which is noted if `what` names it."""
         allowed = min(seconds, self.left() / 2)
+        if allowed < MOMENT:
+            return None
         found: Found | None = None
         with TimeLimit(allowed) as limit:
             try:

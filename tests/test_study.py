@@ -86,7 +86,7 @@ def test_every_condition_holds_for_the_target_by_other_numbers(case):
             continue
         side = 1 if condition.at == low else -1 if condition.at == high else 0 if "kink" not in fact.text else 1
         with mpmath.workdps(60):
-            at, value = (mpmath.mpf(sp.N(e, 60)._mpf_) for e in (condition.at, fact.value))
+            at, value = (mpmath.mpf(str(sp.N(e, 60))) for e in (condition.at, fact.value))
             number = mpmath.diff(function, at, condition.order, direction=side) if condition.order else function(at)
             assert mpmath.almosteq(number, value, 1e-15, 1e-15), fact
 
@@ -102,7 +102,7 @@ def test_text_json_and_toml_are_whole(case):
 
 
 DERIVED = [
-    *(("sin(x)", "0", "pi/2"), ("tanh(x)", "0", "oo"), ("tan(x)", "0", "3"), ("x+1/(1+x)", "0", "oo")),
+    *(("sin(x)", "0", "pi/2"), ("tanh(x)", "0", "oo"), ("1/(x-1/2)**2", "0", "1"), ("x+1/(1+x)", "0", "oo")),
     *(("1/(1+x**2)", "-oo", "oo"), ("sin(w*x)", "0", "pi/w", "w=1:3"), ("cos(x)-x", "0", "2")),
 ]
 
@@ -139,7 +139,7 @@ def test_every_option_is_read_back_as_the_same_condition(case):
 
 
 def test_smith_is_known_at_its_ends():
-    found = study("eq19", timeout=20)
+    found = study("eq19", timeout=5)
     texts = {fact.text for fact in found.of("value", "slope")}
     assert {"f(0) = 0", "f(1) = 1", "f'(0) = sqrt(2)*sqrt(pi)/(2*m)"} <= texts
     assert found.suggested is not None

@@ -298,7 +298,7 @@ def _write_picture(found: Any, file: str, format_: str) -> None:
     from ratfit.plot import plot_study
 
     drawn = BytesIO()
-    plot_study(found).figure.savefig(drawn, format=format_, dpi=200)
+    plot_study(found).figure.savefig(drawn, format=format_, dpi=200)  # type: ignore[union-attr]  # a Figure of its own
     write_bytes(file, drawn.getvalue())
 
 

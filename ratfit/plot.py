@@ -43,7 +43,7 @@ _NAMES = {
     **{"slope": "slope", "limit": "limit", "asymptote": "asymptote", "pole": "pole", "singularity": "singularity"},
 }
 
-_DECIMALS = re.compile(r"(\d+\.\d{4})\d+(?![\de])")
+_DECIMALS = re.compile(r"\d+\.\d{5,}(?![\de])")
 """Decimals that a picture has no room for."""
 
 LABEL = 62
@@ -296,7 +296,7 @@ def _entries(handles: Sequence[tuple[Any, Fact]]) -> list[Any]:
     found: dict[str, tuple[Any, list[str]]] = {}
     for handle, fact in handles:
         text = fact.text.removeprefix(f"{fact.kind} ").split(" in a ")[0].split(", beyond")[0].split(", of order")[0]
-        text = _DECIMALS.sub(r"\1", text.split(": the asymptote is ")[-1])
+        text = _DECIMALS.sub(lambda number: f"{float(number[0]):.5g}", text.split(": the asymptote is ")[-1])
         found.setdefault(fact.kind, (handle, []))[1].append(text)
     for kind, (handle, texts) in found.items():
         handle.set_label(_shortened(f"{_NAMES[kind]}: {', '.join(dict.fromkeys(texts))}", LABEL))

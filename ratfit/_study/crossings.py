@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, pairwise
+from typing import Any
 
 import mpmath
 import sympy as sp
@@ -103,7 +104,7 @@ def _distinct(places: Iterable[mpmath.mpf]) -> tuple[mpmath.mpf, ...]:
 def _is_broken(number: Number, place: mpmath.mpf) -> bool:
     """Whether a function differs on the two sides of a place, or grows on the way to it."""
     with mpmath.workdps(WORK):
-        sides = [[number(place + side * mpmath.mpf(10) ** -k) for k in (24, 12)] for side in (1, -1)]
+        sides: list[Any] = [[number(place + side * mpmath.mpf(10) ** -k) for k in (24, 12)] for side in (1, -1)]
         if any(value is None for side in sides for value in side):
             return True
         (right, right_off), (left, left_off) = sides

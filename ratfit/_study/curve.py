@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import product
+from typing import Any
 
 import mpmath
 import sympy as sp
@@ -169,7 +170,7 @@ def exponent_of(number: Number, place: mpmath.mpf, side: int) -> mpmath.mpf | No
     far = mpmath.isinf(place)
     with mpmath.workdps(FINE):
         steps = [mpmath.mpf(10) ** (k if far else -k) for k in (10, 20, 30)]
-        values = [number(side * step if far else place + side * step) for step in steps]
+        values: list[Any] = [number(side * step if far else place + side * step) for step in steps]
         if any(value is None or value == 0 for value in values):
             return None
         first, second = (

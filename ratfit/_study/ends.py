@@ -56,9 +56,10 @@ def _by_numbers(curve: Curve, end: sp.Expr, side: int, order: int) -> Fact | Non
     samples = curve.all_samples() if curve.middle else curve.samples()
     if all(_vanishes(curve, values, side, order) for values in samples):
         settings = f" at {len(samples)} values of the parameters" if curve.middle else ""
-        condition = condition_at(end, order, sp.S.Zero)
         found = f"numeric, falls off like a power{settings}"
-        return Fact(KINDS[order], f"{MARKS[order]}({end}) = 0", condition, found, end, sp.S.Zero)
+        return Fact(
+            KINDS[order], f"{MARKS[order]}({end}) = 0", condition_at(end, order, sp.S.Zero), found, end, sp.S.Zero
+        )
     with mpmath.workdps(FINE):
         near, mid, far = (number(place + side * mpmath.mpf(10) ** -k) for k in (40, 30, 10))
     if near is None or mid is None or far is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import mpmath
 import sympy as sp
@@ -96,7 +97,7 @@ def _decay(curve: Curve, clock: Clock, place: sp.Expr, side: int, value: sp.Expr
 def _vanishes_fast(curve: Curve, side: int, rest: sp.Expr) -> bool:
     number = numbers_of(rest.xreplace(curve.middle), curve.x)
     with mpmath.workdps(FINE):
-        sizes = [number(side * mpmath.mpf(10) ** k) for k in (2, 3, 4)]
+        sizes: list[Any] = [number(side * mpmath.mpf(10) ** k) for k in (2, 3, 4)]
         if any(size is None for size in sizes) or sizes[0] == 0:
             return bool(sizes[0] == 0 and sizes[1] == 0)
         return abs(sizes[2]) < mpmath.mpf("1e-40") and abs(sizes[1]) <= abs(sizes[0]) * mpmath.mpf("1e-8")
@@ -137,7 +138,7 @@ def _other_growth(curve: Curve, place: sp.Expr, side: int) -> Iterator[Fact]:
     """Growth that is no power: only said, as no fraction follows it."""
     number = curve.number(0)
     with mpmath.workdps(DIGITS):
-        sizes = [number(side * mpmath.mpf(10) ** k) for k in (2, 4, 6)]
+        sizes: list[Any] = [number(side * mpmath.mpf(10) ** k) for k in (2, 4, 6)]
         if any(size is None for size in sizes) or not abs(sizes[0]) < abs(sizes[1]) < abs(sizes[2]):
             return
         exponent = mpmath.log10(abs(sizes[2] / sizes[1])) / 2

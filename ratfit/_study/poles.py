@@ -16,7 +16,8 @@ from ratfit._study.fact import SYMBOLIC, Fact
 
 def pole_facts(scans: Scans) -> Iterator[Fact]:
     """Places where the target grows like a power without bound, at the ends of the domain too."""
-    curve, seen = scans.curve, []
+    curve = scans.curve
+    seen: list[mpmath.mpf] = []
     for place, closed, side in [*_ends(curve), *_inner(scans)]:
         exponent = growth(curve.number(0), place, side)
         if exponent is None or exponent >= 0 or any(abs(place - other) < mpmath.mpf("1e-30") for other in seen):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import mpmath
@@ -106,7 +107,7 @@ def has_sign(curve: Curve, order: int, sign: int, clock: Clock) -> bool:
         return False
     if not curve.parameters and clock.attempt(lambda: _no_real_root(flat, curve)):
         return True
-    return any(clock.attempt(lambda e=image: _signed(flat, curve.x, e, sign), seconds=0.3) for image in _images(curve))
+    return any(clock.attempt(partial(_signed, flat, curve.x, image, sign), seconds=0.3) for image in _images(curve))
 
 
 def _no_real_root(flat: sp.Expr, curve: Curve) -> bool:

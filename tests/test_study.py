@@ -139,7 +139,7 @@ def test_every_option_is_read_back_as_the_same_condition(case):
 
 
 def test_smith_is_known_at_its_ends():
-    found = study("eq19", timeout=5)
+    found = study("eq19", timeout=15)
     texts = {fact.text for fact in found.of("value", "slope")}
     assert {"f(0) = 0", "f(1) = 1", "f'(0) = sqrt(2)*sqrt(pi)/(2*m)"} <= texts
     assert found.suggested is not None

@@ -120,7 +120,7 @@ def _no_real_root(flat: sp.Expr, curve: Curve) -> bool:
         if (not low.is_Rational and not low.is_infinite) or (not high.is_Rational and not high.is_infinite):
             return False
         inside = polynomial.count_roots(low, high) if polynomial.degree() > 0 else 0
-        inside -= sum(1 for end in (low, high) if end.is_finite and polynomial.eval(end) == 0)
+        inside -= sum(1 for end in (low, high) if end.is_finite and polynomial(end) == 0)
         if inside:
             return False
     return True

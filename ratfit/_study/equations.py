@@ -9,7 +9,7 @@ import sympy as sp
 from ratfit._condition import JET, Equation
 from ratfit._study.clock import Clock
 from ratfit._study.closed import shorter
-from ratfit._study.curve import Curve
+from ratfit._study.curve import Curve, exponent_of
 from ratfit._study.fact import SYMBOLIC, Fact
 
 _Y, _SLOPE, _BEND = JET[:3]
@@ -29,7 +29,10 @@ _SHAPES: tuple[tuple[sp.Expr, Callable[[sp.Symbol], sp.Expr]], ...] = (
 
 def equation_facts(curve: Curve, clock: Clock) -> Iterator[Fact]:
     """The equations of a short list that hold identically; the simplest one is enough."""
-    at = next((end for end in curve.target.domain if not end.is_infinite), sp.S.Zero)
+    ends = zip(curve.target.domain, (1, -1), strict=True)
+    at = next((end for end, side in ends if _is_regular(curve, end, side)), None)
+    if at is None:
+        return
     for left, right_of in _SHAPES:
         right = right_of(curve.x)
         constant = clock.attempt(lambda a=left, b=right: _constant(curve, a, b), seconds=0.6)  # type: ignore[misc]
@@ -41,6 +44,13 @@ def equation_facts(curve: Curve, clock: Clock) -> Iterator[Fact]:
         text = f"{residual} = 0 on the domain"
         yield Fact("equation", text, Equation(residual, at), SYMBOLIC, at)
         return
+
+
+def _is_regular(curve: Curve, end: sp.Expr, side: int) -> bool:
+    """Whether the target and its slope are finite at an end: where they are not the residual says nothing."""
+    place = curve.ends[0 if side == 1 else 1]
+    exponents = [] if end.is_infinite else [exponent_of(curve.number(order), place, side) for order in (0, 1)]
+    return bool(exponents) and all(exponent is None or exponent > -0.001 for exponent in exponents)
 
 
 def _constant(curve: Curve, left: sp.Expr, right: sp.Expr) -> sp.Expr | None:

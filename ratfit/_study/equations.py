@@ -30,7 +30,8 @@ _SHAPES: tuple[tuple[sp.Expr, Callable[[sp.Symbol], sp.Expr]], ...] = (
 def equation_facts(curve: Curve, clock: Clock) -> Iterator[Fact]:
     """The equations of a short list that hold identically; the simplest one is enough."""
     ends = zip(curve.target.domain, (1, -1), strict=True)
-    at = next((end for end, side in ends if _is_regular(curve, end, side)), None)
+    everywhere = all(end.is_infinite for end in curve.target.domain)
+    at = next((end for end, side in ends if _is_regular(curve, end, side)), sp.S.Zero if everywhere else None)
     if at is None:
         return
     for left, right_of in _SHAPES:

@@ -13,14 +13,19 @@ from ratfit._deadline import TimeLimit
 from ratfit._diagnosis import advice, contradiction, explained
 from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Fit
+from ratfit._generators import DIGITS
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
 from ratfit._solver import Solution, Undecided, pick, solve
 from ratfit._system import System, equations, polynomial_equations
+from ratfit._target import sample_values
 from ratfit._verify import verify
 
-POLYNOMIAL_SHARE = 0.4
-"""The part of the time that the polynomial route may take before many starts are tried instead."""
+AGREEMENT = sp.Float("1e-35")
+"""Candidates that are nearer to each other than this wherever one looks may be one function."""
+
+POLYNOMIAL_SECONDS = 8.0
+"""How long the polynomial route may take, and at most half of the time there is, before many starts are tried."""
 
 
 @dataclass
@@ -68,11 +73,12 @@ def _derived(problem: Problem, route: str, known: _Known, timeout: float | None,
     known.words["unknowns"] = str(len(system.shape.unknowns))
     if clash := contradiction(system):
         return Fit(problem, "inconsistent", taken, reasons=(clash,))
+    alternative = (taken, route) == ("polynomial", "auto")
+    seconds = min(POLYNOMIAL_SECONDS, timeout / 2 if timeout else POLYNOMIAL_SECONDS) if alternative else None
     try:
-        _collect(system, solve(system, taken, seed), known, taken == route or taken != "polynomial", timeout)
+        _collect(system, taken, known, seconds, seed)
     except (Undecided, RatfitError) as error:  # Related is a RatfitError too
-        known.route, second = ("nonlinear", True) if (taken, route) == ("polynomial", "auto") else (taken, False)
-        if not (second and _found_by_starts(system, known, timeout, seed)):
+        if not (alternative and _found_by_starts(system, known, seed)):
             if isinstance(error, RatfitError) and not isinstance(error, Related):
                 raise
             return Fit(problem, "rejected", taken, reasons=(str(error),))
@@ -84,25 +90,24 @@ def _derived(problem: Problem, route: str, known: _Known, timeout: float | None,
     return replace(fit, advice=advice(system, fit)) if taken == "linear" else fit
 
 
-def _found_by_starts(system: System, known: _Known, timeout: float | None, seed: int) -> bool:
+def _found_by_starts(system: System, known: _Known, seed: int) -> bool:
     """Whether the nonlinear route finds what the polynomial one could not."""
+    known.route = known.words["route"] = "nonlinear"
     try:
-        _collect(system, solve(system, "nonlinear", seed), known, True, timeout)
+        _collect(system, "nonlinear", known, None, seed)
     except (Undecided, RatfitError):
         return False
     return any(not candidate.reason for candidate in known.candidates)
 
 
-def _collect(
-    system: System, solutions: Iterable[Solution], known: _Known, unlimited: bool, timeout: float | None
-) -> None:
-    """Verifies solutions as they come; Undecided where a route that has an alternative takes too long."""
+def _collect(system: System, route: str, known: _Known, seconds: float | None, seed: int) -> None:
+    """Verifies solutions as they come; Undecided where a route that has an alternative takes longer than `seconds`."""
     known.candidates = []
-    with TimeLimit(None if unlimited or timeout is None else POLYNOMIAL_SHARE * timeout) as limit:
-        for solution in solutions:
+    with TimeLimit(seconds) as limit:
+        for solution in solve(system, route, seed):
             known.candidates.append(verify(system, solution))
     if limit.passed:
-        raise Undecided(f"the polynomial route took longer than {POLYNOMIAL_SHARE * (timeout or 0):g} s")
+        raise Undecided(f"the {route} route took longer than {seconds:g} s")
 
 
 def _distinct(candidates: list[Candidate]) -> list[Candidate]:
@@ -117,12 +122,23 @@ def _distinct(candidates: list[Candidate]) -> list[Candidate]:
 def _same_function(a: Candidate, b: Candidate) -> bool:
     if a.expression == b.expression:
         return True
-    if bool(a.reason) != bool(b.reason) or a.free or b.free:
+    if bool(a.reason) != bool(b.reason) or a.free or b.free or not _agree(a.expression, b.expression):
         return False
+    if a.certificate or b.certificate:
+        return True  # to the last digit: algebra has no use for numbers that long
     try:
         return is_zero((a.expression - b.expression).together()) is True
     except RatfitError:
         return False
+
+
+def _agree(a: sp.Expr, b: sp.Expr) -> bool:
+    """Whether two expressions agree to AGREEMENT at a few places of all their symbols."""
+    for values in sample_values(a.free_symbols | b.free_symbols, ("1/7", "4/7", "9/11")):
+        first, second = (sp.N(e.xreplace(values), DIGITS) for e in (a, b))
+        if not abs(first - second) <= AGREEMENT * (1 + abs(first)):
+            return False
+    return True
 
 
 def _assembled(problem: Problem, route: str, candidates: list[Candidate], shown: tuple[str, ...]) -> Fit:

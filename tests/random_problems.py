@@ -1021,35 +1021,35 @@ def powers(draw: Draw, number: int) -> Recovery:
         values[a] = -values[a]
     fits = form.subs(values)
 
-    def integral(over: tuple[sp.Expr, sp.Expr]) -> tuple[rf.AbstractCondition, sp.Expr]:
+    def integral(over: tuple[sp.Expr, sp.Expr]) -> tuple[Callable, sp.Expr]:
         primitive = sp.cancel(w * form * u**p / sp.diff(u, x)) * u ** (1 - p) / (1 - p)
         ends = [R(0) if e.is_infinite else primitive.subs(x, e) for e in over]
-        general = ends[1] - ends[0]
         where = None if over == domain else over
-        return rf.Integral(sp.sympify(w), where, sp.cancel(general.subs(values))), general
+        return lambda demand: rf.Integral(sp.sympify(w), where, demand), ends[1] - ends[0]
 
-    def point(order: int, at: sp.Expr) -> tuple[rf.AbstractCondition, sp.Expr]:
-        general = sp.diff(form, x, order).subs(x, at)
-        demand = sp.cancel(general.subs(values))
-        return (rf.Derivative(at, order, demand) if order else rf.Value(at, demand)), general
+    def point(order: int, at: sp.Expr) -> tuple[Callable, sp.Expr]:
+        stated = (lambda demand: rf.Derivative(at, order, demand)) if order else (lambda demand: rf.Value(at, demand))
+        return stated, sp.diff(form, x, order).subs(x, at)
 
     low, high = inner(domain)
     choices = [
         lambda: point(0, high), lambda: point(0, (low + high) / 2), lambda: point(1, low), lambda: point(1, high),
         lambda: integral((low, (low + high) / 2)),
     ]  # fmt: skip
-    made = [integral(domain), draw.random.choice(choices)()]
-    jacobian = sp.Matrix([[sp.diff(g, s) for s in (a, b)] for _, g in made])
-    if abs(jacobian.det().subs({s: v.subs(MIDDLE) for s, v in values.items()})) < INDEPENDENT:
+    read = [integral(domain), draw.random.choice(choices)()]
+    middle = {s: v.subs(MIDDLE) for s, v in values.items()}
+    jacobian = sp.Matrix([[sp.diff(g, s).subs(middle) for s in (a, b)] for _, g in read])
+    if abs(jacobian.det()) < INDEPENDENT:
         raise NoProblem
+    conditions = [stated(sp.cancel(general.subs(values))) for stated, general in read]
     problem = rf.Problem(
-        conditions=[condition for condition, _ in made],
+        conditions=conditions,
         form=rf.Form(form, (a, b)),
         variable=x,
         domain=domain,
         name=f"u'/u**p {number}",
     )
-    kinds = {condition.kind for condition, _ in made}
+    kinds = {condition.kind for condition in conditions}
     tags = {domain_kind(domain), "parameter" if problem.parameters else "numbers"}
     return Recovery(number, "u'/u**p", problem, fits, True, frozenset(kinds), 0, frozenset(tags))
 

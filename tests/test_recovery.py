@@ -134,7 +134,7 @@ def misfit(problem: rf.Problem, condition: rf.AbstractCondition, expression: sp.
         low, high = (e.xreplace(values) for e in condition.over or problem.domain)
         weighted = sp.lambdify(x, condition.weight.xreplace(values) * f, "mpmath")
         if f.has(sp.exp) and high.is_infinite:
-            high = low + 200  # exp(-200) is nothing here
+            high = low + 140  # exp(-140) is nothing here
         error = abs(quadrature(weighted, low, high) - demand)
     else:
         order = getattr(condition, "order", 0)
@@ -151,7 +151,7 @@ def quadrature(function, low: sp.Expr, high: sp.Expr) -> mpmath.mpf:
     """Gauss-Legendre in pieces; an infinite range goes through tan."""
     ends = [(-mpmath.pi / 2 if e < 0 else mpmath.pi / 2) if e.is_infinite else number(e) for e in (low, high)]
     if not (low.is_infinite or high.is_infinite):
-        return mpmath.quad(function, mpmath.linspace(*ends, 3 if ends[1] - ends[0] < 100 else 30))
+        return mpmath.quad(function, mpmath.linspace(*ends, 3 if ends[1] - ends[0] < 100 else 12))
     ends = [end if e.is_infinite else mpmath.atan(end) for e, end in zip((low, high), ends, strict=True)]
     return mpmath.quad(lambda t: function(mpmath.tan(t)) * (1 + mpmath.tan(t) ** 2), mpmath.linspace(*ends, 3))
 

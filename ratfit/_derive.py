@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import sympy as sp
 
+from ratfit._candidates import candidates
 from ratfit._condition import Limit
 from ratfit._deadline import TimeLimit
 from ratfit._diagnosis import advice, contradiction, explained
@@ -16,7 +16,7 @@ from ratfit._fit import Candidate, Fit
 from ratfit._generators import DIGITS
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
-from ratfit._solver import Solution, Undecided, pick, solve
+from ratfit._solver import Solution, Undecided, pick
 from ratfit._system import System, equations, polynomial_equations
 from ratfit._target import sample_values
 from ratfit._verify import verify
@@ -24,7 +24,7 @@ from ratfit._verify import verify
 AGREEMENT = sp.Float("1e-35")
 """Candidates that are nearer to each other than this wherever one looks may be one function."""
 
-POLYNOMIAL_SECONDS = 8.0
+POLYNOMIAL_SECONDS = 4.0
 """How long the polynomial route may take, and at most half of the time there is, before many starts are tried."""
 
 
@@ -104,16 +104,16 @@ def _collect(system: System, route: str, known: _Known, seconds: float | None, s
     """Verifies solutions as they come; Undecided where a route that has an alternative takes longer than `seconds`."""
     known.candidates = []
     with TimeLimit(seconds) as limit:
-        for solution in solve(system, route, seed):
-            known.candidates.append(verify(system, solution))
+        for candidate in candidates(system, route, seed):
+            known.candidates.append(candidate)
     if limit.passed:
         raise Undecided(f"the {route} route took longer than {seconds:g} s")
 
 
-def _distinct(candidates: list[Candidate]) -> list[Candidate]:
+def _distinct(everything: list[Candidate]) -> list[Candidate]:
     """Candidates that are different functions, in the order found; two signs of one square root often are not."""
     found: list[Candidate] = []
-    for candidate in candidates:
+    for candidate in everything:
         if not any(_same_function(candidate, other) for other in found):
             found.append(candidate)
     return found
@@ -141,9 +141,9 @@ def _agree(a: sp.Expr, b: sp.Expr) -> bool:
     return True
 
 
-def _assembled(problem: Problem, route: str, candidates: list[Candidate], shown: tuple[str, ...]) -> Fit:
-    accepted = tuple(c for c in candidates if not c.reason)
-    rejected = tuple(c for c in candidates if c.reason)
+def _assembled(problem: Problem, route: str, found: list[Candidate], shown: tuple[str, ...]) -> Fit:
+    accepted = tuple(c for c in found if not c.reason)
+    rejected = tuple(c for c in found if c.reason)
     if len(accepted) > 1:
         status = "several"
     elif accepted:

@@ -9,6 +9,7 @@ from itertools import combinations
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
+from ratfit._candidates import candidates
 from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivative, Value, describe
 from ratfit._deadline import TimeLimit
 from ratfit._field import is_zero, numerical_rank
@@ -17,9 +18,8 @@ from ratfit._jets import same
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
 from ratfit._rows import Row, rows, rows_of
-from ratfit._solver import Undecided, pick, solve
+from ratfit._solver import Undecided, pick
 from ratfit._system import System, completed, equations, of_pairs
-from ratfit._verify import verify
 
 CLASH_SECONDS = 10.0
 """How long the search for a smallest set of clashing conditions may take before it names all of them."""
@@ -76,8 +76,7 @@ def _without_one(problem: Problem) -> str:
 def _any_candidate(problem: Problem) -> Candidate | None:
     try:
         system = equations(problem)
-        found = (verify(system, solution) for solution in solve(system, pick(system)))
-        return next((candidate for candidate in found if not candidate.reason), None)
+        return next((candidate for candidate in candidates(system, pick(system)) if not candidate.reason), None)
     except (RatfitError, Undecided):
         return None
 
@@ -96,8 +95,8 @@ def _consistent(problem: Problem, route: str) -> bool:
     """Whether a subset has a fit; one that a route cannot decide counts as consistent, so that no clash is invented."""
     try:
         system = equations(problem)
-        solutions = solve(system, pick(system, "auto" if route == "linear" else route))
-        return any(not verify(system, s).reason for s in solutions)
+        found = candidates(system, pick(system, "auto" if route == "linear" else route))
+        return any(not candidate.reason for candidate in found)
     except (RatfitError, Undecided):  # Related is a RatfitError too
         return True
 

@@ -172,8 +172,34 @@ class Generators:
         argument = e.args[0]
         if argument.is_Rational and argument > 0:
             return sp.Add(*(k * self._atom(sp.log(p)) for p, k in sp.factorrat(argument).items()))
+        factors = self._log_factors(argument)
+        if factors is not None:
+            return sp.Add(*(k * self.flatten(sp.log(f)) for f, k in factors))
         expanded = sp.expand_log(e, force=bool(argument.is_positive))
         return self._atom(e) if isinstance(expanded, sp.log) else self.flatten(expanded)
+
+    def _log_factors(self, argument: sp.Expr) -> list[tuple[sp.Expr, int]] | None:
+        """A rational function as powers of positive irreducible factors: log(2*m + 1) and log(m + 1/2) are related."""
+        if not argument.free_symbols or not argument.is_rational_function(*argument.free_symbols):
+            return None
+        if any(
+            not number.is_Rational
+            for number in argument.atoms(sp.NumberSymbol, sp.Function, sp.Pow)
+            if number.is_number
+        ):
+            return None
+        above, below = sp.fraction(sp.together(argument))
+        (n, tops), (d, bottoms) = sp.factor_list(above), sp.factor_list(below)
+        if len(tops) + len(bottoms) == 1 and n / d == 1 and (tops or bottoms)[0][1] == 1 and tops:
+            return None
+        found: list[tuple[sp.Expr, int]] = []
+        for factor, k in [*((f, k) for f, k in tops), *((f, -k) for f, k in bottoms)]:
+            sign = self._sign(factor)
+            n *= sign**k
+            found.append((sp.expand(sign * factor), k))
+        if n / d < 0:
+            return None
+        return [(sp.Rational(n) / d, 1), *found] if n / d != 1 else found
 
     def _turn(self, angle: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
         """Cosine and sine of an angle, by the addition theorem from those of the monomials' parts."""

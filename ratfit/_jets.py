@@ -59,13 +59,14 @@ def completion(
     points: list[tuple[AbstractPointCondition, sp.Expr]],
     equations: list[Equation],
     taken: set[str],
-    given: Callable[[sp.Expr, int], bool],
+    needless: Callable[[sp.Expr], bool],
+    vanishes: Callable[[sp.Expr, int], bool],
 ) -> Completion:
     """Every derivative that the rows of the linear route need at a node.
 
-    `points` are the stated ones with their demands; `given` says which derivatives need no statement (parity has them
-    zero, or a polynomial asks for nothing below). A residual whose highest derivative is linear gives that derivative;
-    what it cannot give becomes a symbol, and the residual an equation that is left over.
+    `points` are the stated ones with their demands; `needless` says at which places a stated derivative needs none
+    below it (a polynomial's), `vanishes` which are zero by parity. A residual whose highest derivative is linear gives
+    that derivative; what it cannot give becomes a symbol, and the residual an equation that is left over.
     """
     letter = next(letter for letter in ("s", "ss", "sss", "slope") if not any(n.startswith(letter) for n in taken))
     symbols: list[sp.Symbol] = []
@@ -77,7 +78,7 @@ def completion(
     jets = _stated(points, equations)
     for jet in jets:
         for order in range(max(jet.known, default=0)):
-            if order not in jet.known and not given(jet.at, order):
+            if order not in jet.known and not needless(jet.at) and not vanishes(jet.at, order):
                 open_(jet, order)
     leftover: list[sp.Expr] = []
     for equation in sorted(equations, key=lambda e: e.height):
@@ -85,8 +86,10 @@ def completion(
         for k, residual in enumerate(equation.residuals(x)):
             top = equation.height + k
             for order in range(top):
-                if order not in jet.known:
-                    open_(jet, order) if not given(jet.at, order) else jet.known.update({order: sp.S.Zero})
+                if order not in jet.known and vanishes(jet.at, order):
+                    jet.known[order] = sp.S.Zero
+                elif order not in jet.known:
+                    open_(jet, order)
             leftover += _resolved(residual.subs(x, equation.at), jet, top, open_)
     facts = tuple(fact for jet in jets for fact in jet.facts())
     return Completion(facts, tuple(symbols), tuple(leftover))
@@ -94,9 +97,9 @@ def completion(
 
 def _stated(points: list[tuple[AbstractPointCondition, sp.Expr]], equations: list[Equation]) -> list[Jet]:
     jets: list[Jet] = []
-    for condition in [*(c for c, _ in points), *equations]:
-        if not any(same(jet.at, condition.at) for jet in jets):
-            jets.append(Jet(condition.at, {}))
+    for at in [*(c.at for c, _ in points), *(e.at for e in equations)]:
+        if not any(same(jet.at, at) for jet in jets):
+            jets.append(Jet(at, {}))
     for condition, demand in points:
         jet = next(jet for jet in jets if same(jet.at, condition.at))
         jet.known.setdefault(condition.order, demand)

@@ -36,7 +36,8 @@ def poles(
     if not denominator.has(x):
         return []
     found = []
-    places = sample_values(denominator.free_symbols - {x}, ("0", "1/7", "4/7", "1"))
+    symbols = set[sp.Symbol]().union(denominator.free_symbols - {x}, *(end.free_symbols for end in support))
+    places = sample_values(symbols, ("0", "1/7", "4/7", "1"))
     for values in places + _suspects(denominator, x, support):
         with mpmath.workdps(DIGITS):
             ends = [endpoint(end.xreplace(values)) for end in support]
@@ -51,7 +52,7 @@ def endpoint(end: sp.Expr) -> mpmath.mpf:
 
 def _suspects(denominator: sp.Expr, x: sp.Symbol, support: tuple[sp.Expr, sp.Expr]) -> list[dict[sp.Symbol, sp.Expr]]:
     """One setting of the parameters at which the denominator changes its sign on the support, if floats see one."""
-    symbols = sorted(denominator.free_symbols - {x}, key=lambda s: s.name)
+    symbols = sorted((denominator.free_symbols - {x}).union(*(e.free_symbols for e in support)), key=lambda s: s.name)
     if not symbols or any(end.is_infinite for end in support):
         return []
     function = sp.lambdify([x, *symbols], denominator, "math", cse=False)

@@ -97,7 +97,7 @@ def limit_rows(system: System, limit: Limit, demand: sp.Expr, raised: int) -> tu
     """
     side = -1 if same(limit.at, system.problem.support()[1]) else 1
     series_to = partial(_series, system.shape, system.problem.variable, limit, side)
-    order = lowest = min(map(_valuation, series_to(0).below))
+    order = lowest = min(v for v in map(_valuation, series_to(0).below) if v is not None)
     widest = lowest + 2 * len(columns(system.shape)[0])
     while True:
         series = series_to(order)
@@ -143,8 +143,9 @@ def _local(shape: Shape, x: sp.Symbol, limit: Limit, side: int) -> tuple[list[sp
     return moved[:n], moved[n : 2 * n], moved[2 * n :]
 
 
-def _valuation(series: Laurent) -> float:
-    return next((series.lowest + k for k, c in enumerate(series.coefficients) if c != 0), float("inf"))
+def _valuation(series: Laurent) -> int | None:
+    """The lowest power that is there; None where none is up to the order that the series goes to."""
+    return next((series.lowest + k for k, c in enumerate(series.coefficients) if c != 0), None)
 
 
 def _spans(found: list[Row], lead: Row) -> bool:

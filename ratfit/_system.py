@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 import sympy as sp
 
@@ -67,10 +67,8 @@ class System:
         points = [(c, d) for c, d in self.pairs if isinstance(c, AbstractPointCondition)]
         odes = [c for c in self.conditions if isinstance(c, Equation) and not is_plain_equation(self, c)]
         taken = {s.name for s in (problem.variable, *problem.parameters, *self.shape.unknowns)}
-        return completion(problem.variable, points, odes, taken, self._needs_no_statement)
-
-    def _needs_no_statement(self, at: sp.Expr, order: int) -> bool:
-        return (self.plain and is_finite_at(self, at)) or vanishes_by_parity(self.problem, at, order)
+        needless = partial(_is_plain_at, self)
+        return completion(problem.variable, points, odes, taken, needless, partial(vanishes_by_parity, problem))
 
 
 def equations(problem: Problem) -> System:
@@ -103,6 +101,10 @@ def columns(shape: Shape) -> tuple[list[tuple[sp.Expr, sp.Expr]], bool]:
     fixed = (shape.numerator.subs(nothing), shape.denominator.subs(nothing))
     has_fixed = any(part != 0 for part in fixed)
     return pairs + ([fixed] if has_fixed else []), has_fixed
+
+
+def _is_plain_at(system: System, at: sp.Expr) -> bool:
+    return system.plain and is_finite_at(system, at)
 
 
 def is_finite_at(system: System, at: sp.Expr) -> bool:

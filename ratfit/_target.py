@@ -146,8 +146,11 @@ class Target:
     def integral(self, weight: sp.Expr, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
         """The integral of weight times the target; raises RatfitError when no closed form is found in time."""
         advice = "; state its value with equals"
+        integrand = weight * self.expression
         with TimeLimit(INTEGRAL_SECONDS) as limit:
-            value = sp.integrate(weight * self.expression, (self.variable, *over))
+            value = sp.integrate(integrand, (self.variable, *over))
+            if not value.has(sp.Integral, sp.nan, sp.zoo, sp.oo):
+                value = self._confirmed_integral(integrand, over, value)
         if limit.passed:
             raise RatfitError(f"no closed form of the target's integral within {INTEGRAL_SECONDS:g} s{advice}")
         if not value.is_finite and (value.is_infinite or value.has(sp.nan, sp.zoo, sp.oo)):
@@ -155,6 +158,42 @@ class Target:
         if value.has(sp.Integral, sp.Piecewise):
             raise RatfitError(f"no closed form of the target's integral{advice}")
         return value
+
+    def _confirmed_integral(self, integrand: sp.Expr, over: tuple[sp.Expr, sp.Expr], value: sp.Expr) -> sp.Expr:
+        """sympy's value, or our own for a fraction, where numbers confirm it; RatfitError otherwise."""
+        if is_confirmed_integral(integrand, self.variable, over, value):
+            return value
+        if integrand.is_rational_function(self.variable):
+            from ratfit._rational_integral import rational_integral
+
+            return rational_integral(integrand, self.variable, over)
+        raise RatfitError(f"sympy's integral of the target, {value}, is not confirmed by numbers; state it with equals")
+
+
+def is_confirmed_integral(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr], value: sp.Expr) -> bool:
+    """Whether quadrature agrees with the closed form of an integral, as far as its own error estimate goes.
+
+    sympy's integrals have been wrong: terms with logarithms are lost where a symbol is real.
+    """
+    symbols = sorted(
+        (integrand.free_symbols | value.free_symbols | over[0].free_symbols | over[1].free_symbols) - {x}, key=str
+    )
+    for values in sample_values(set(symbols), ("2/7", "5/9")):
+        function = sp.lambdify(x, integrand.xreplace(values), "mpmath")
+        claimed = sp.N(value.xreplace(values), 20)
+        ends = [_mpmath_end(end.xreplace(values)) for end in over]
+        try:
+            with mpmath.workdps(20):
+                found, error = mpmath.quad(function, ends, error=True)
+        except (ZeroDivisionError, ValueError, TypeError, NameError):
+            return claimed.is_real is True  # nothing to hold against it
+        if not claimed.is_real or not abs(found - mpmath.mpf(str(claimed))) <= 100 * error + 1e-9 * (1 + abs(found)):
+            return False
+    return True
+
+
+def _mpmath_end(end: sp.Expr) -> mpmath.mpf:
+    return mpmath.mpf("inf" if end > 0 else "-inf") if end.is_infinite else mpmath.mpf(str(sp.N(end, 25)))
 
 
 def check_domain(domain: tuple[Exact, Exact]) -> tuple[sp.Expr, sp.Expr]:

@@ -40,6 +40,7 @@ def null_space(system: System) -> list[list[sp.Expr]]:
 
 def kernel(matrix: list[list[sp.Expr]], width: int) -> list[list[sp.Expr]]:
     """A basis of the vectors that every row sends to zero, its symbols taken for independent."""
+    matrix = [_without_content(row) for row in matrix]
     field = Field([e for row in matrix for e in row])
     basis = field.null_space([[field.encode(e) for e in row] for row in matrix], width)
     rank = width - len(basis)
@@ -49,6 +50,15 @@ def kernel(matrix: list[list[sp.Expr]], width: int) -> list[list[sp.Expr]]:
             "in a way that is not known here; state their values with equals"
         )
     return [[field.decode(e) for e in v] for v in basis]
+
+
+def _without_content(row: list[sp.Expr]) -> list[sp.Expr]:
+    """A row divided by the roots in its first term: one radical for a whole row would make the field larger for all."""
+    first = next((sp.Add.make_args(e)[0] for e in row if e != 0), sp.S.One)
+    roots = [f for f in sp.Mul.make_args(first) if f.is_Pow and not f.exp.is_Integer and f.exp.is_Rational]
+    if not roots:
+        return row
+    return [sp.expand(e / sp.Mul(*roots)) for e in row]
 
 
 def _vanishes(functional: list[sp.Expr], vectors: list[list[sp.Expr]]) -> bool:

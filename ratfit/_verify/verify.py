@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 import mpmath
 import sympy as sp
@@ -12,18 +13,22 @@ from ratfit._deadline import TimeLimit
 from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Checked
 from ratfit._fraction import presentable
+from ratfit._generators import DIGITS
 from ratfit._parse import RatfitError
-from ratfit._poles import endpoint, function_of, multiprecise, poles
+from ratfit._poles import endpoint, function_of, multiprecise, poles, polynomial_roots
 from ratfit._solver import Numbers, Solution, Table
 from ratfit._system import System
 from ratfit._target import at_values, sample_values
 from ratfit._verify.candidate import Reduced, without_common_factors
 from ratfit._verify.exactly import found_exactly
-from ratfit._verify.numbers import decimal, shown
+from ratfit._verify.numbers import SHOWN, decimal, shown
 from ratfit._verify.numerically import numerical_residual
 
 TOLERANCE = mpmath.mpf("1e-30")
 """A residual at 50 digits below this, relative to the size of the demand, counts as zero."""
+
+COMMON = mpmath.mpf("1e-25")
+"""Zeros of numerator and denominator nearer than this are one, where coefficients are numbers of 60 digits."""
 
 GUESS_SECONDS = 2.0
 """How long the proof of a guessed closed form may take."""
@@ -57,6 +62,11 @@ def verify(system: System, solution: Solution) -> Candidate:
         for condition, demand in zip(system.conditions, system.demands, strict=True)
     )
     reason = _failure(checked, candidate.common) or ("" if free else _pole(system, candidate.denominator))
+    if roots := expression.atoms(sp.CRootOf):
+        words = (
+            f"exact: {len(roots)} algebraic number{'s' * (len(roots) > 1)} without radicals, shown to {SHOWN} digits"
+        )
+        return Candidate(expression.xreplace({r: r.evalf(SHOWN) for r in roots}), free, checked, reason, words)
     return Candidate(expression, free, checked, reason)
 
 
@@ -74,6 +84,9 @@ def _verified_numbers(system: System, candidate: Reduced, numbers: Numbers) -> C
                 return guessed
     if numbers.table is not None:
         return _verified_table(system, candidate, numbers, numbers.table)
+    if common := _common_root(candidate, system.problem.variable):
+        reason = f"numerator and denominator vanish together at {common}: a spurious root"
+        return Candidate(shown(candidate, system.problem.variable), reason=reason)
     checked = tuple(
         _check_number(system, condition, demand, candidate)
         if condition in numbers.conditions
@@ -91,7 +104,7 @@ def _verified_table(system: System, candidate: Reduced, numbers: Numbers, table:
     rows = [dict(zip(table.parameters, node, strict=True)) for node in table.nodes]
     nodes = [rows[0], rows[len(rows) // 2], rows[-1]]
     checked = tuple(_check_number(system, c, d, candidate, nodes) for c, d in system.pairs)
-    middles = [{p: (a[p] + b[p]) / 2 for p in table.parameters} for a, b in zip(rows, rows[1:], strict=False)]
+    middles = [{p: (a[p] + b[p]) / 2 for p in table.parameters} for a, b in pairwise(rows)]
     worst = max(
         numerical_residual(system, c, d, expression, middles[:: max(1, len(middles) // 4)]) for c, d in system.pairs
     )
@@ -100,6 +113,16 @@ def _verified_table(system: System, candidate: Reduced, numbers: Numbers, table:
     return Candidate(
         candidate.factor * decimal(candidate.numerator / candidate.denominator), {}, checked, reason, words, table
     )
+
+
+def _common_root(candidate: Reduced, x: sp.Symbol) -> str:
+    """Where numerator and denominator all but share a zero, as roots of the cleared equations do, in words."""
+    if not (candidate.numerator.is_polynomial(x) and candidate.denominator.is_polynomial(x)):
+        return ""
+    with mpmath.workdps(DIGITS):
+        above, below = (polynomial_roots(part, x) for part in (candidate.numerator, candidate.denominator))
+        near = [b for a in above for b in below if abs(a - b) < COMMON * (1 + abs(a))]
+    return f"{x} = {mpmath.nstr(near[0].real if abs(near[0].imag) < COMMON else near[0], 8)}" if near else ""
 
 
 def _plain(system: System, guess: Solution) -> sp.Expr:

@@ -137,7 +137,9 @@ def agreement(fit: Fit, card: Card) -> str:
 
 def equals_published(fit: Fit, card: Card) -> bool:
     """Whether some accepted candidate is the published formula, as functions of variable, parameters and free names."""
-    for candidate in fit.candidates if card.published is not None else ():
+    if card.published is None:
+        return False
+    for candidate in fit.candidates:
         by_name = {s.name: s for s in candidate.expression.free_symbols}
         published = card.published.xreplace({s: by_name.get(s.name, s) for s in card.published.free_symbols})
         if is_zero(candidate.expression - published):

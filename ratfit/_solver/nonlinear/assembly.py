@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import sympy as sp
 
@@ -126,8 +127,8 @@ def _assembly(system: System, shape: Shape, rest: list[Demanded]) -> Assembly:
 def _too_few(missing: int) -> str:
     what = "one more condition is" if missing == 1 else f"{missing} more conditions are"
     return (
-        f"equations that are not linear leave {missing} coefficient{'s' * (missing > 1)} open, and such a family has no "
-        f"formula: {what} needed (a value or a slope at a place, as in --value AT), or a smaller form"
+        f"equations that are not linear leave {missing} coefficient{'s' * (missing > 1)} open, and such a family has "
+        f"no formula: {what} needed (a value or a slope at a place, as in --value AT), or a smaller form"
     )
 
 
@@ -136,7 +137,7 @@ def _parts(system: System, condition: AbstractCondition, demand: sp.Expr) -> lis
         return [_integral(system, condition, demand)]
     if isinstance(condition, Limit):
         raise Undecided(
-            f"a limit of this form (at {condition.place}) is no formula of its unknowns; state values and slopes instead"
+            f"a limit of this form (at {condition.place}) is no formula of its unknowns; state values or slopes instead"
         )
     return [Residual(residual) for residual in residuals(system, condition, demand)]
 
@@ -146,7 +147,7 @@ def _integral(system: System, condition: Integral, demand: sp.Expr) -> Residual:
     inside, rest = integral_parts(system.problem, condition)
     integrand = condition.weight * system.shape.factor * system.shape.numerator / system.shape.denominator
     places = [inside[0], *_kinks(condition.weight, system.problem.variable, inside), inside[1]]
-    pieces = zip(places, places[1:], strict=False)
+    pieces = pairwise(places)
     return Residual(rest - demand, tuple(Moment(integrand, low, high) for low, high in pieces))
 
 

@@ -1,8 +1,9 @@
-"""The nonlinear route: many starts, each root polished to 50 digits and, where balls can, proved to be near a true one."""
+"""The nonlinear route: many starts, each root polished to 60 digits and, where balls can, proved near a true one."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 
 import sympy as sp
 
@@ -10,6 +11,9 @@ from ratfit._parse import RatfitError
 from ratfit._solver.nonlinear.assembly import Assembly, assembled
 from ratfit._solver.solution import Numbers, Solution
 from ratfit._system import System
+
+SIMPLE, ROUGH = 100, 1e-5
+"""Largest denominator of a number that a multiple root may stand for, and how near it must be."""
 
 SAME = 1e-7
 """Roots nearer than this, relative to their size, are one."""
@@ -74,10 +78,24 @@ def _polished_solution(assembly: Assembly, root) -> Solution | None:
 
     found = certified_root(assembly.residuals, root)
     if found is None:
-        return None
+        return _multiple_root(assembly, root)
     values = dict(zip(assembly.residuals.unknowns, found.numbers, strict=True))
     numbers = Numbers(assembly.numerical, found.words, _guess(assembly, found.numbers))
     return Solution(assembly.numerator.subs(values), assembly.denominator.subs(values), numbers=numbers)
+
+
+def _multiple_root(assembly: Assembly, root) -> Solution | None:
+    """Newton's method does not polish a multiple root, of which floats know half the digits: fractions that are so
+    simple that they may be meant are put in its place, for the caller to verify.
+    """
+    scale = max(root, key=abs) if assembly.residuals.homogeneous else 1.0
+    numbers = [float(value / scale) for value in root]
+    simple = [Fraction(number).limit_denominator(SIMPLE) for number in numbers]
+    if any(abs(float(s) - n) > ROUGH * (1 + abs(n)) for s, n in zip(simple, numbers, strict=True)):
+        return None
+    exact = [sp.Rational(s.numerator, s.denominator) for s in simple]
+    found = dict(zip(assembly.residuals.unknowns, exact, strict=True))
+    return Solution(assembly.numerator.subs(found), assembly.denominator.subs(found))
 
 
 def _guess(assembly: Assembly, numbers: Sequence[sp.Rational]) -> Solution | None:
@@ -101,5 +119,5 @@ def _constants(assembly: Assembly) -> list[sp.Expr]:
     residuals = assembly.residuals
     everything = [part.plain for part in residuals.parts] + [m.integrand for p in residuals.parts for m in p.moments]
     found = set().union(*(e.atoms(sp.NumberSymbol, sp.Function, sp.Pow) for e in everything))
-    irrational = (c for c in found if c.is_number and c.is_real and not c.is_Rational and not 1 / c in found)
+    irrational = (c for c in found if c.is_number and c.is_real and not c.is_Rational and 1 / c not in found)
     return sorted(irrational, key=lambda c: (sp.count_ops(c), str(c)))[:3]

@@ -94,4 +94,5 @@ def _guess(
         if formula is None:
             return None
         found[unknown] = formula
-    return Solution(assembly.numerator.subs(found), assembly.denominator.subs(found))
+    whole = assembly.numerator.subs(found) / assembly.denominator.subs(found)
+    return Solution(*sp.fraction(sp.cancel(whole) if whole.is_rational_function() else whole))

@@ -60,7 +60,8 @@ def _out_of_time(problem: Problem, known: _Known, timeout: float | None) -> Fit:
     so_far = ", ".join(f"{k} {v}" for k, v in known.words.items()) or "the target's own data were not found"
     kept = _distinct(known.candidates)
     found = [c for c in kept if not c.reason]
-    names = f"; found so far: {', '.join(str(c.expression) for c in found)}" if found else ""
+    shown = [str(c.expression)[:200] for c in found[:3]] + ["..."] * (len(found) > 3)
+    names = f"; found so far: {', '.join(shown)}" if found else ""
     reason = f"gave up after {timeout:g} s ({so_far}){names}; allow more with --timeout, or state equals"
     rejected = tuple(c for c in kept if c.reason)
     return Fit(problem, "timeout", known.route, tuple(found), rejected, (reason,))

@@ -41,8 +41,8 @@ def explained(fit: Fit, route: str) -> Fit:
     reasons = [f"{c.expression}: {_unattainable(c)}{c.reason}" for c in fit.rejected]
     if any(c.conditions and all(k.holds for k in c.conditions) for c in fit.rejected):
         reasons.append(
-            "the conditions hold, but the fit has a pole: narrow the parameters' ranges or the domain, "
-            "raise a degree, or add a condition"
+            "the conditions hold, but the fit is no finite real function on all of the domain: narrow that, or the "
+            "parameters' ranges, raise a degree, or add a condition"
         )
     elif fit.route == "nonlinear":
         reasons.append(
@@ -65,9 +65,9 @@ def _clash_in_words(problem: Problem, route: str) -> str:
 def _without_one(problem: Problem) -> str:
     """Which condition could be left out so that the others are kept, in words; nothing where none was found in time."""
     with TimeLimit(CLASH_SECONDS):
-        for condition in reversed(problem.conditions):
+        for condition in reversed(problem.conditions if len(problem.conditions) > 1 else ()):
             others = problem.with_conditions(tuple(c for c in problem.conditions if c != condition))
-            candidate = _any_candidate(others) if others.conditions else None
+            candidate = _any_candidate(others)
             if candidate is not None:
                 return f"without the {describe(condition)} there is an answer, so drop that or raise a degree"
     return ""

@@ -12,7 +12,7 @@ from ratfit._deadline import TimeLimit
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
 from ratfit._rational_integral import rational_integral
-from ratfit._target import INTEGRAL_SECONDS, is_confirmed_integral, sample_values
+from ratfit._target import INTEGRAL_SECONDS, is_confirmed_integral, is_written, sample_values
 
 UNFINISHED = (BasePolynomialError, NotImplementedError, ValueError, TypeError, AttributeError, RecursionError)
 """What sympy raises from inside an integral that it cannot do."""
@@ -56,7 +56,7 @@ def integrated(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) 
         raise Divergent(
             f"the integral of {integrand} over [{over[0]}, {over[1]}] diverges: choose another weight, range or form"
         )
-    if value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo):
+    if value.has(sp.Integral, sp.Piecewise, sp.nan, sp.oo, sp.zoo) or not is_written(value):
         raise RatfitError(
             f"the integral of {integrand} over [{over[0]}, {over[1]}] has no closed form; choose another weight"
         )

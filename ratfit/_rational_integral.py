@@ -23,7 +23,7 @@ class _Logarithm:
     polynomial: sp.Poly
 
     def at(self, place: sp.Expr) -> sp.Expr:
-        value = self.polynomial.eval(place)
+        value = self.polynomial(place)
         return self.factor * sp.log(_sign(value) * value)
 
 
@@ -37,7 +37,7 @@ class _Arctangent:
     def at(self, place: sp.Expr) -> sp.Expr:
         if place.is_infinite:
             return self.factor * sp.pi / 2 * _sign(self.linear.LC()) * (1 if place is sp.oo else -1)
-        return self.factor * sp.atan(self.linear.eval(place))
+        return self.factor * sp.atan(self.linear(place))
 
 
 def rational_integral(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:

@@ -12,7 +12,7 @@ import mpmath
 import sympy as sp
 
 from ratfit._deadline import TimeLimit
-from ratfit._parse import RatfitError, check_name, parse_expression
+from ratfit._parse import FUNCTIONS, RatfitError, check_name, parse_expression
 
 Exact: TypeAlias = sp.Expr | int | float | Fraction | str
 
@@ -155,8 +155,9 @@ class Target:
             raise RatfitError(f"no closed form of the target's integral within {INTEGRAL_SECONDS:g} s{advice}")
         if not value.is_finite and (value.is_infinite or value.has(sp.nan, sp.zoo, sp.oo)):
             raise RatfitError("the target's integral diverges; choose a weight or range for which it is finite")
-        if value.has(sp.Integral, sp.Piecewise):
-            raise RatfitError(f"no closed form of the target's integral{advice}")
+        if value.has(sp.Integral, sp.Piecewise) or not is_written(value):
+            about = "" if value.free_symbols or not value.is_number else f", about {sp.N(value, 20)}"
+            raise RatfitError(f"no closed form of the target's integral in ratfit's functions{about}{advice}")
         return value
 
     def _confirmed_integral(self, integrand: sp.Expr, over: tuple[sp.Expr, sp.Expr], value: sp.Expr) -> sp.Expr:
@@ -168,6 +169,12 @@ class Target:
 
             return rational_integral(integrand, self.variable, over)
         raise RatfitError(f"sympy's integral of the target, {value}, is not confirmed by numbers; state it with equals")
+
+
+def is_written(value: sp.Expr) -> bool:
+    """Whether an expression holds functions of ratfit's grammar alone: a Fresnel integral it could not read back."""
+    known = tuple(function for function, _ in FUNCTIONS.values() if isinstance(function, type))
+    return all(isinstance(call, known) for call in value.atoms(sp.Function))
 
 
 def is_confirmed_integral(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr], value: sp.Expr) -> bool:

@@ -6,8 +6,10 @@ import re
 import pytest
 
 from ratfit._parse import parse_expression
+from ratfit._problem_file import read_problem
+from ratfit._problem_text import to_tables
 from ratfit.cli import main
-from ratfit.gallery import cards
+from ratfit.gallery import card, cards
 
 SINE = ["sin(x)", "--on", "0", "pi/2", "--form", "2/1", "--value", "0", "--derivative", "0"]
 SINE += ["--value", "pi/2", "--derivative", "pi/2"]
@@ -184,12 +186,19 @@ def test_a_file_that_is_no_text(run, tmp_path):
 KEYS = ["name", "status", "target", "variable", "domain", "parameters", "form", "expression", "candidates", "free"]
 KEYS += ["choice", "route", "conditions", "rejected", "cost"]
 
+NO_ANSWER = {"azimuth-as-printed"}
+"""Cards that end with an honest no, which is what they are there to show."""
+
 
 @pytest.mark.parametrize("name", [c.name for c in cards()])
 def test_json_keeps_the_contract(run, name):
     status, out, _ = run("derive", name, "--format", "json")
     found = json.loads(out)
-    assert status == 0 and list(found) == KEYS
+    assert list(found) == KEYS
+    if name in NO_ANSWER:
+        assert (status, found["expression"], found["candidates"]) == (1, None, []) and found["rejected"][0]["reason"]
+        return
+    assert status == 0
     assert all(list(c) == ["kind", "at", "equals", "holds", "residual"] for c in found["conditions"])
     assert list(found["cost"]) == ["add", "mul", "div", "other"]
     names = {
@@ -301,8 +310,10 @@ def test_gallery_card_as_a_problem_file(run, tmp_path):
         path = tmp_path / f"{name}.toml"
         path.write_text(run("gallery", name, "--format", "toml")[1])
         assert run("check", str(path))[0] == 0
-        ours, theirs = (json.loads(run("derive", p, "--format", "json")[1]) for p in (str(path), name))
-        assert ours["expression"] == theirs["expression"]
+        assert to_tables(read_problem(path)) == to_tables(card(name).problem)
+        if name in ("smith", "zenith", "tanh"):
+            ours, theirs = (json.loads(run("derive", p, "--format", "json")[1]) for p in (str(path), name))
+            assert ours["expression"] == theirs["expression"]
 
 
 def test_init_writes_a_file_that_works_and_overwrites_none(run, tmp_path):

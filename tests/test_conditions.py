@@ -196,14 +196,16 @@ def test_coefficients_along_a_parameter_hold_at_the_nodes_of_the_table():
     fit = fit_of("x", "0 1", "0/1", value=["0;equals=1"], integral=["equals=1/2+m/10"], parameter=["m=1/10:2"])
     candidate = fit.candidates[0]
     assert len(candidate.table.nodes) == 17 and "interpolated between" in candidate.certificate
-    expression, x = candidate.expression, fit.problem.variable
-    (m,) = candidate.table.parameters
-    for (node,) in candidate.table.nodes[::4]:
+    table, x = candidate.table, fit.problem.variable
+    (m,) = table.parameters
+    for (node,), row in zip(table.nodes[::4], table.rows[::4], strict=True):
         with mpmath.workdps(60):
             wanted = mpmath.mpf(1) / 2 + mpmath.mpf(int(node.p)) / int(node.q) / 10
             b = mpmath.findroot(lambda b, wanted=wanted: mpmath.log(1 + b) / b - wanted, 1)
-            found = sp.N(expression.subs({m: node, x: HALF}), 50)
-            assert abs(mpmath.mpf(str(found)) - 1 / (1 + b / 2)) < 1e-40
+            there = (table.numerator / table.denominator).subs(dict(zip(table.unknowns, row, strict=True)))
+            assert abs(mpmath.mpf(str(sp.N(there.subs(x, HALF), 50))) - 1 / (1 + b / 2)) < 1e-40
+            between = sp.N(candidate.expression.subs({m: node, x: HALF}), 50)
+            assert abs(mpmath.mpf(str(between)) - 1 / (1 + b / 2)) < 1e-8
 
 
 def test_a_family_that_is_not_linear_says_how_many_conditions_are_missing():
@@ -293,3 +295,77 @@ def test_conditions_in_python_say_what_they_refuse():
     ):
         with pytest.raises(rf.RatfitError):
             bad()
+
+
+# Forms whose only candidates are no finite real functions on the domain: where, and why.
+BROKEN = {
+    "a radicand below zero": (
+        ("sqrt(a+b*x+c*x**2)", "a,b,c", {"value": ["0;equals=1", "1;equals=1"], "derivative": ["0;equals=-3"]}),
+        "must be not negative",
+    ),
+    "a negative power": (("(1+b*x)**c", "b,c", {"derivative": ["0;equals=3", "0;order=2;equals=12"]}), "pole at x = 1"),
+    "an essential singularity": (
+        ("exp((a+b*x)/(1+c*x))", "a,b,c", {"value": ["0;equals=1", "1;equals=2"], "derivative": ["0;equals=-1"]}),
+        "pole at x = 0.409",
+    ),
+    "the logarithm of zero": (
+        ("log((x-a)**2) + b", "a,b", {"value": ["0;equals=1", "1;equals=1"]}),
+        "must be positive",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_what_is_no_function_on_the_domain_is_rejected(name):
+    (form, unknowns, stated), said = BROKEN[name]
+    fit = fit_of("x", "0 1", form, unknowns=unknowns, **stated)
+    assert fit.expression is None and said in " ".join(fit.reasons)
+
+
+def test_an_inner_variable_brings_its_pole_along():
+    fit = fit_of("x", "0 1", "1/0", of="1/(x-1/3)", value=["1/2;equals=-2", "1;equals=1"])
+    assert fit.expression is None and "pole at x = 0.333" in fit.reasons[0]
+
+
+def test_coefficients_that_interpolation_cannot_follow_are_no_answer():
+    """a*x + exp(a)*x**2 with the value sin(k) at 1: eight turns within the range of k."""
+    words = {"unknowns": "a", "value": ["1;equals=sin(k)"], "parameter": ["k=0:50"]}
+    fit = fit_of("x", "0 1", "a*x+exp(a)*x**2", **words)
+    assert fit.expression is None
+    assert not fit.rejected or "too little" in fit.rejected[0].reason
+
+
+def test_ever_more_roots_end_with_the_plainest():
+    fit = fit_of("x", "0 1", "sin(a*x)", unknowns="a", value=["1;equals=1/2"])
+    assert fit.status == "several" and len(fit.candidates) <= 24
+    assert same(fit.expression, "sin(pi*x/6)") or abs(sp.N(fit.expression.subs(fit.problem.variable, HALF))) < 0.3
+
+
+def test_a_double_root_that_is_plain_is_found():
+    """a*exp(-b*x) with total 1 and the target's value at 1: b*exp(-b) = exp(-1), of which b = 1 is a double root."""
+    fit = fit_of("exp(-x)", "0 oo", "a*exp(-b*x)", unknowns="a,b", integral=["weight=1"], value=["1"])
+    assert any(same(c.expression, "exp(-x)") for c in fit.candidates)
+
+
+def test_incomplete_data_whose_answers_are_of_lower_degree():
+    """No [2/1] but a line has a second derivative that vanishes: the answers are in the form [1/0]."""
+    fit = fit_of("1-x", "0 2", "2/1", derivative=["0;order=2;equals=0"], value=["1;equals=0"])
+    assert fit.status == "family"
+    x = fit.problem.variable
+    assert sp.diff(fit.expression, x, 2) == 0 and fit.expression.subs(x, 1) == 0
+
+
+def test_equations_of_a_polynomial_where_nothing_is_known():
+    """y = 1 and y = -1 among others; 1 + (1 - 2c)*x + c*x**2 with c = 1 +- 1/sqrt(2)."""
+    lines = fit_of("x", "0 2", "1/0", equation=["y' - 1 + y**2;at=1", "y' - 1 + y**2;at=2"])
+    assert {"1", "-1"} <= {str(c.expression) for c in lines.candidates}
+    data = {"value": ["0;equals=1", "2;equals=3"], "equation": ["y''*y - 1;at=1"]}
+    parabolas = fit_of("x", "0 2", "2/0", **data)
+    for c in (1 + 1 / sp.sqrt(2), 1 - 1 / sp.sqrt(2)):
+        assert any(same(k.expression, f"1 + (1 - 2*({c}))*x + ({c})*x**2") for k in parabolas.candidates)
+
+
+def test_an_integral_with_a_real_parameter():
+    """sympy loses the logarithm and the arctangent of this one: (m + 2)*(log(2)/2 + 3*pi/4)."""
+    fit = fit_of("(m+2)*(x+3)/(x**2+1)", "0 1", "0/0", integral=["weight=1"], parameter=["m=1/2:2"])
+    assert same(fit.expression, "(m + 2)*(log(2)/2 + 3*pi/4)")

@@ -138,7 +138,10 @@ class _Reader:
         if expression.is_Rational:
             return self.flat(QQ(expression.p, expression.q)), self.flat(1)
         if leaf := self._leaf(expression):
-            return self._power((self.places[leaf[0]], self.flat(1)), int(leaf[1] / self.units[leaf[0]]))
+            times = leaf[1] / self.units[leaf[0]]
+            if abs(times) > MOST_VOLUME:
+                raise Refused  # exponents without a common unit, as decimals are
+            return self._power((self.places[leaf[0]], self.flat(1)), int(times))
         if expression.is_Add or expression.is_Mul:
             combined = added if expression.is_Add else multiplied
             return functools.reduce(combined, map(self._ratio, self._parts(expression)))

@@ -45,12 +45,14 @@ class Numbers:
 
 @dataclass(frozen=True)
 class Table:
-    """Coefficients at nodes of the parameters: `nodes` holds a tuple of their values for each row of `rows`.
+    """Numerator and denominator in `unknowns`, and these at nodes of the parameters.
 
-    `columns` names what stands in a row.
+    `nodes` holds a tuple of the parameters' values for each row of `rows`, which holds the unknowns' to 60 digits.
     """
 
     parameters: tuple[sp.Symbol, ...]
     nodes: tuple[tuple[sp.Expr, ...], ...]
-    columns: tuple[str, ...]
+    unknowns: tuple[sp.Symbol, ...]
     rows: tuple[tuple[sp.Expr, ...], ...]
+    numerator: sp.Expr
+    denominator: sp.Expr

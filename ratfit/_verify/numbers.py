@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from decimal import Decimal, localcontext
+
 import sympy as sp
 
 from ratfit._verify.candidate import Reduced
@@ -39,6 +41,15 @@ def _short(number: sp.Expr) -> sp.Expr:
     """A decimal; a whole number that it equals to the last digit shown."""
     whole = sp.Integer(round(number))
     return whole if abs(number - whole) < NOTHING * (1 + abs(whole)) else sp.Float(number, SHOWN)
+
+
+def shortest_decimal(number: sp.Rational) -> sp.Expr:
+    """A rational with a power of 10 below as the decimal that it is; others, and short ones, as they are."""
+    if number.q < 10**5 or 10 ** len(str(number.q)) % number.q:
+        return number
+    with localcontext(prec=200):
+        digits = len((Decimal(int(number.p)) / Decimal(int(number.q))).as_tuple().digits)
+    return sp.Float(number, digits)
 
 
 def decimal(expression: sp.Expr) -> sp.Expr:

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from itertools import pairwise
-
 import mpmath
 import sympy as sp
 
-from ratfit._condition import AbstractCondition, Limit, describe
+from ratfit._condition import AbstractCondition, describe
 from ratfit._deadline import TimeLimit
 from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Checked
 from ratfit._fraction import presentable
 from ratfit._generators import DIGITS
 from ratfit._parse import RatfitError
-from ratfit._poles import endpoint, function_of, multiprecise, poles, polynomial_roots
+from ratfit._poles import multiprecise, polynomial_roots
 from ratfit._solver import Numbers, Solution, Table
 from ratfit._system import System
-from ratfit._target import at_values, sample_values
+from ratfit._target import sample_values
+from ratfit._verify.between import measured_between, nodes_of
 from ratfit._verify.candidate import Reduced, without_common_factors
 from ratfit._verify.exactly import found_exactly
-from ratfit._verify.numbers import SHOWN, decimal, shown
+from ratfit._verify.numbers import SHOWN, shortest_decimal, shown
 from ratfit._verify.numerically import numerical_residual
+from ratfit._verify.whole import broken
 
 TOLERANCE = mpmath.mpf("1e-30")
 """A residual at 50 digits below this, relative to the size of the demand, counts as zero."""
@@ -61,11 +60,9 @@ def verify(system: System, solution: Solution) -> Candidate:
         _check(system, condition, demand, candidate, expression)
         for condition, demand in zip(system.conditions, system.demands, strict=True)
     )
-    reason = _failure(checked, candidate.common) or ("" if free else _pole(system, candidate.denominator))
+    reason = _failure(checked, candidate.common) or ("" if free else broken(system, candidate))
     if roots := expression.atoms(sp.CRootOf):
-        words = (
-            f"exact: {len(roots)} algebraic number{'s' * (len(roots) > 1)} without radicals, shown to {SHOWN} digits"
-        )
+        words = f"exact: {len(roots)} algebraic number(s) without radicals, shown to {SHOWN} digits"
         return Candidate(expression.xreplace({r: r.evalf(SHOWN) for r in roots}), free, checked, reason, words)
     return Candidate(expression, free, checked, reason)
 
@@ -94,25 +91,25 @@ def _verified_numbers(system: System, candidate: Reduced, numbers: Numbers) -> C
         for condition, demand in system.pairs
     )
     expression = shown(candidate, system.problem.variable)
-    reason = _failure(checked, candidate.common) or _pole(system, candidate.denominator)
+    reason = _failure(checked, candidate.common) or broken(system, candidate)
     return Candidate(expression, {}, checked, reason, numbers.certificate + looks)
 
 
 def _verified_table(system: System, candidate: Reduced, numbers: Numbers, table: Table) -> Candidate:
-    """A candidate whose coefficients are interpolated: conditions are checked at nodes, and measured between."""
-    expression = candidate.expression
-    rows = [dict(zip(table.parameters, node, strict=True)) for node in table.nodes]
-    nodes = [rows[0], rows[len(rows) // 2], rows[-1]]
-    checked = tuple(_check_number(system, c, d, candidate, nodes) for c, d in system.pairs)
-    middles = [{p: (a[p] + b[p]) / 2 for p in table.parameters} for a, b in pairwise(rows)]
-    worst = max(
-        numerical_residual(system, c, d, expression, middles[:: max(1, len(middles) // 4)]) for c, d in system.pairs
-    )
-    words = f"{numbers.certificate}, where the conditions hold to {mpmath.nstr(worst, 2)}"
-    reason = _failure(checked, sp.S.One) or _pole(system, candidate.denominator)
-    return Candidate(
-        candidate.factor * decimal(candidate.numerator / candidate.denominator), {}, checked, reason, words, table
-    )
+    """A candidate whose coefficients are interpolated: conditions must hold at nodes, and are measured between."""
+    for place, there in nodes_of(table, candidate):
+        at_node = tuple(_check_number(system, c, d, there, [place]) for c, d in system.pairs)
+        if reason := _failure(at_node, sp.S.One):
+            return Candidate(sp.nan, {}, at_node, reason)
+    checked = tuple(measured_between(system, c, d, candidate, table) for c, d in system.pairs)
+    worst = max(c.residual or 0.0 for c in checked)
+    words = f"{numbers.certificate}, where the conditions hold to {worst:.2g}"
+    whole = candidate.numerator / candidate.denominator
+    expression = candidate.factor * whole.xreplace({r: shortest_decimal(r) for r in whole.atoms(sp.Rational)})
+    if not all(c.holds for c in checked):
+        reason = f"{words}: too little; narrow the ranges of the parameters, or take the table"
+        return Candidate(expression, {}, checked, reason, words, table)
+    return Candidate(expression, {}, checked, broken(system, candidate), words, table)
 
 
 def _common_root(candidate: Reduced, x: sp.Symbol) -> str:
@@ -207,30 +204,3 @@ def _failure(checked: tuple[Checked, ...], common: sp.Expr) -> str:
         return ""
     cancelled = f"the factor {common} cancels, then " if common != 1 else ""
     return f"{cancelled}{'; '.join(failed)}"
-
-
-def _pole(system: System, denominator: sp.Expr) -> str:
-    """The first pole on the closed support that the target does not have, in words."""
-    x = system.problem.variable
-    asked = [c.at for c in system.conditions if isinstance(c, Limit) and not c.at.is_infinite]
-    for root, values in poles(denominator, x, system.problem.support()):
-        if any(abs(multiprecise(at.xreplace(values)) - root) < mpmath.mpf("1e-12") for at in asked):
-            continue  # a limit at its place has been verified: the pole is no worse than what was asked for
-        if not _target_infinite(system, values, root):
-            return f"it has a pole at {x} = {mpmath.nstr(root, 8)}{at_values(values)}"
-    return ""
-
-
-def _target_infinite(system: System, values: Mapping[sp.Symbol, sp.Expr], at: mpmath.mpf) -> bool:
-    """Whether the target grows beyond bounds on the way to a place inside the support, as its own poles do."""
-    target = system.problem.target
-    if target is None:
-        return False
-    low, high = (end.xreplace(values) for end in system.problem.support())
-    side = 1 if at < (endpoint(low) + endpoint(high)) / 2 else -1
-    function = function_of(target.expression, target.variable, values)
-    try:
-        near, far = (abs(function(at + side * mpmath.mpf(step))) for step in ("1e-12", "1e-6"))
-    except ZeroDivisionError:
-        return True
-    return bool(near > 1000 * far)

@@ -29,7 +29,8 @@ class Card:
     `published` is the printed formula as an expression of the problem's variable, parameters and choices, None where
     there is none; `printed` its text. `settings` are the parameter values to measure with, as the source's figures
     have them. `epsilon` and `gamma` are the source's figures as numbers (0.014, 2.3), None where it gives none;
-    `operations` its count. `degree` is None, or the degree of a card that takes `--degree`: a Pade table at the place of its first condition.
+    `operations` its count. `degree` is None, or the degree of a card that takes `--degree`: a Pade table at the
+    place of its first condition.
     """
 
     problem: Problem

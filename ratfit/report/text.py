@@ -101,7 +101,7 @@ def _candidate_lines(fit: Fit) -> list[str]:
 
 def _table_lines(table: Table) -> list[str]:
     """Coefficients at the nodes of the parameters, rounded for the eye."""
-    head = [*(p.name for p in table.parameters), *table.columns]
+    head = [*(p.name for p in table.parameters), *(u.name for u in table.unknowns)]
     rows = [[sp.sstr(sp.N(v, DRAWN)) for v in (*node, *row)] for node, row in zip(table.nodes, table.rows, strict=True)]
     return ["", "  table", *(f"    {line}" for line in aligned([head, *rows]))]
 

@@ -1,59 +1,92 @@
-"""Interpolation of coefficients in one or two parameters, through the nodes of a tensor grid."""
+"""Interpolation of coefficients in one or two parameters, through the nodes of a tensor grid of Chebyshev points."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
+import mpmath
 import sympy as sp
 
 from ratfit._target import Parameter
 
 DIGITS = 70
 
+SPARE = 3
+"""Digits that are kept beyond those that interpolation has right."""
+
+Powers = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Interpolant:
+    """A polynomial in the parameters, each scaled to [-1, 1]: its coefficients by their powers.
+
+    `error` estimates how far it is from what it interpolates, relative to its size: the coefficients of the highest
+    powers tell how fast the others would have gone on to fall.
+    """
+
+    parameters: tuple[Parameter, ...]
+    coefficients: dict[Powers, mpmath.mpf]
+    error: float
+
+    def shortened(self) -> sp.Expr:
+        """The polynomial with the digits that are known: the error says how many, and SPARE more."""
+        size = max(map(abs, self.coefficients.values()))
+        smallest = size * mpmath.mpf(max(self.error, 10.0 ** (SPARE - 40))) / 10**SPARE
+        scaled = [(2 * p - p.low - p.high) / (p.high - p.low) for p in self.parameters]
+        terms = []
+        for powers, coefficient in self.coefficients.items():
+            digits = int(mpmath.floor(mpmath.log10(abs(coefficient) / smallest))) + 1 if coefficient else 0
+            if digits > 0:
+                number = sp.Rational(mpmath.nstr(coefficient, digits, strip_zeros=False))
+                terms.append(number * sp.Mul(*(t**k for t, k in zip(scaled, powers, strict=True))))
+        return sp.Add(*terms)
+
 
 def interpolant(
     parameters: Sequence[Parameter], nodes: Sequence[tuple[sp.Rational, ...]], values: Sequence[sp.Rational]
-) -> sp.Expr:
-    """The polynomial in the parameters, each scaled to [-1, 1], that takes the values at the nodes of a tensor grid.
-
-    The nodes are ordered with the last parameter running fastest. Coefficients are rationals of DIGITS digits.
-    """
-    first, *others = parameters
-    places = list(dict.fromkeys(node[0] for node in nodes))
-    if not others:
-        inner: list[sp.Expr] = list(values)
-    else:
-        width = len(nodes) // len(places)
-        inner = [
-            interpolant(others, [n[1:] for n in nodes[i : i + width]], values[i : i + width])
-            for i in range(0, len(nodes), width)
+) -> Interpolant:
+    """The polynomial that takes the values at the nodes of a tensor grid, the last parameter running fastest."""
+    with mpmath.workdps(DIGITS):
+        axes = [list(dict.fromkeys(node[k] for node in nodes)) for k in range(len(parameters))]
+        scaled = [[_scaled(p, value) for value in axis] for p, axis in zip(parameters, axes, strict=True)]
+        grid: dict[Powers, list[mpmath.mpf]] = {(): [mpmath.mpf(int(v.p)) / int(v.q) for v in values]}
+        for places in scaled:
+            # One axis after the other: rows along it become coefficients, a list for each power.
+            block = len(next(iter(grid.values()))) // len(places)
+            grid = {
+                (*powers, k): [column[k] for column in columns]
+                for powers, flat in grid.items()
+                for columns in [[_newton(places, flat[i::block]) for i in range(block)]]
+                for k in range(len(places))
+            }
+        coefficients = {powers: flat[0] for powers, flat in grid.items()}
+        size = max(map(abs, coefficients.values()))
+        # Of x**k the Chebyshev polynomial of that degree is the part 2**(1 - k): what the last two leave undone.
+        last = [len(axis) - 2 for axis in axes]
+        tail = [
+            abs(c) * mpmath.ldexp(1, sum(1 - k for k in powers if k))
+            for powers, c in coefficients.items()
+            if any(k >= top for k, top in zip(powers, last, strict=True))
         ]
-    return _newton(_scaled(first), [_scaled_value(first, p) for p in places], inner)
+        return Interpolant(tuple(parameters), coefficients, float(max(tail) / size) if size else 0.0)
 
 
-def _scaled(parameter: Parameter) -> sp.Expr:
-    return (2 * parameter - parameter.low - parameter.high) / (parameter.high - parameter.low)
+def _scaled(parameter: Parameter, value: sp.Rational) -> mpmath.mpf:
+    scaled = sp.N((2 * value - parameter.low - parameter.high) / (parameter.high - parameter.low), DIGITS)
+    return mpmath.mpf(sp.Float(scaled, DIGITS)._mpf_)
 
 
-def _scaled_value(parameter: Parameter, value: sp.Rational) -> sp.Expr:
-    return (2 * value - parameter.low - parameter.high) / (parameter.high - parameter.low)
-
-
-def _newton(t: sp.Expr, places: Sequence[sp.Expr], values: Sequence[sp.Expr]) -> sp.Expr:
-    """Divided differences, multiplied out into powers of t: on [-1, 1] they stay of moderate size."""
+def _newton(places: Sequence[mpmath.mpf], values: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
+    """Divided differences, multiplied out into powers: on [-1, 1] these stay of moderate size."""
     table = list(values)
     for k in range(1, len(places)):
         for i in range(len(places) - 1, k - 1, -1):
-            table[i] = sp.expand((table[i] - table[i - 1]) / (places[i] - places[i - k]))
-    u = sp.Dummy("u")
-    total: sp.Expr = sp.S.Zero
+            table[i] = (table[i] - table[i - 1]) / (places[i] - places[i - k])
+    found = [mpmath.mpf(0)] * len(places)
     for place, difference in zip(reversed(places), reversed(table), strict=True):
-        total = sp.expand(total * (u - place) + difference)
-    coefficients = sp.Poly(total, u).all_coeffs()[::-1]
-    return sp.Add(*(_rounded(c) * t**k for k, c in enumerate(coefficients)))
-
-
-def _rounded(coefficient: sp.Expr) -> sp.Expr:
-    """Rationals of thousands of digits, as exact interpolation makes them, cut to DIGITS."""
-    long = {r: sp.Rational(str(sp.Float(r, DIGITS))) for r in coefficient.atoms(sp.Rational) if r.q > 10**DIGITS}
-    return coefficient.xreplace(long)
+        shifted = [mpmath.mpf(0), *found[:-1]]
+        found = [s - place * c for s, c in zip(shifted, found, strict=True)]
+        found[0] += difference
+    return found

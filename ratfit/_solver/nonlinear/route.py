@@ -12,6 +12,9 @@ from ratfit._solver.nonlinear.assembly import Assembly, assembled
 from ratfit._solver.solution import Numbers, Solution
 from ratfit._system import System
 
+MOST = 24
+"""Roots that are looked at: equations like sin(a) = 1/2 have ever more."""
+
 SIMPLE, ROUGH = 100, 1e-5
 """Largest denominator of a number that a multiple root may stand for, and how near it must be."""
 
@@ -57,7 +60,9 @@ def _single(assembly: Assembly, seed: int) -> Iterator[Solution]:
 
     done: list = []
     for found in search_chunks(assembly.residuals, seed=seed):
-        for root in found:
+        for root in sorted(found, key=lambda root: abs(root).max()):
+            if len(done) == MOST:
+                return
             if any(_near(root, other, assembly.residuals.homogeneous) for other in done):
                 continue
             done.append(root)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 import sympy as sp
@@ -15,6 +16,12 @@ from ratfit._solver.nonlinear.recognise_function import recognised_function
 from ratfit._solver.solution import Numbers, Solution, Table, Undecided
 from ratfit._target import Parameter
 
+GRIDS = (17, 33, 65)
+"""Nodes of one parameter: the next number is tried where interpolation is ROUGH."""
+
+ROUGH = 1e-8
+"""Estimated error of an interpolant, relative to its size, above which more nodes are tried."""
+
 FINEST = 10**5
 """Largest denominator of a node: short numbers let formulas be recognised."""
 
@@ -24,25 +31,37 @@ Node = tuple[sp.Rational, ...]
 def tabulated(assembly: Assembly, parameters: Sequence[sp.Symbol], seed: int) -> Iterator[Solution]:
     """A solution for each branch of roots that reaches all nodes of a grid of the parameters.
 
-    Raises Undecided for more than two parameters, infinite ranges, and where no branch reaches all nodes.
+    With one parameter the grid is made finer where interpolation between its nodes is poor. Raises Undecided for more
+    than two parameters, infinite ranges, and where no branch reaches all nodes.
     """
-    from ratfit._solver.nonlinear.grid import roots_on_grid
-
     if not all(isinstance(p, Parameter) for p in parameters):
         raise Undecided(f"equations that are not linear need numbers for {', '.join(map(str, parameters))}")
     ordered = tuple(p for p in parameters if isinstance(p, Parameter))
+    for count in GRIDS if len(ordered) == 1 else (None,):
+        rough = False
+        for branch in _branches(assembly, ordered, count, seed):
+            found = _tabulated_branch(assembly, ordered, branch)
+            if found is None:
+                continue
+            if found.error > ROUGH and found.guess is None and count != GRIDS[-1] and len(ordered) == 1:
+                rough = True
+                break
+            yield _solution(assembly, found)
+        if not rough:
+            return
+
+
+def _branches(assembly: Assembly, parameters: tuple[Parameter, ...], count: int | None, seed: int) -> list:
+    from ratfit._solver.nonlinear.grid import roots_on_grid
+
     try:
-        branches = roots_on_grid(assembly.residuals, ordered, seed=seed)
+        branches = roots_on_grid(assembly.residuals, parameters, count, seed=seed)
     except RatfitError as error:
         raise Undecided(str(error)) from None
     whole = [branch for branch in branches if not branch.failed.any()]
     if branches and not whole:
         raise Undecided("no branch of solutions reaches over the whole ranges of the parameters; narrow them")
-    for branch in whole:
-        nodes = [tuple(_short(value) for value in row) for row in branch.parameters]
-        solution = _solution(assembly, ordered, nodes, branch.coefficients)
-        if solution is not None:
-            yield solution
+    return whole
 
 
 def _short(value: float) -> sp.Rational:
@@ -50,10 +69,22 @@ def _short(value: float) -> sp.Rational:
     return sp.Rational(nearest.numerator, nearest.denominator)
 
 
-def _solution(assembly: Assembly, parameters: tuple[Parameter, ...], nodes: list[Node], roots) -> Solution | None:
-    """The solution of one branch; None where a node's root is not one to 50 digits."""
+@dataclass(frozen=True)
+class _Tabulated:
+    """A branch at its nodes: the table, the interpolants and their estimated error, what is proved, and a guess."""
+
+    table: Table
+    between: tuple[sp.Expr, ...]
+    error: float
+    words: str
+    guess: Solution | None
+
+
+def _tabulated_branch(assembly: Assembly, parameters: tuple[Parameter, ...], branch) -> _Tabulated | None:
+    """The roots of one branch, certified; None where a node's root is not one to 50 digits."""
+    nodes = [tuple(_short(value) for value in row) for row in branch.parameters]
     rows, widest = [], sp.S.Zero
-    for node, root in zip(nodes, roots, strict=True):
+    for node, root in zip(nodes, branch.coefficients, strict=True):
         found = certified_root(assembly.residuals.at(dict(zip(parameters, node, strict=True))), root)
         if found is None:
             return None
@@ -63,16 +94,18 @@ def _solution(assembly: Assembly, parameters: tuple[Parameter, ...], nodes: list
         rows = _scaled(rows)
     columns = list(zip(*rows, strict=True))
     unknowns = assembly.residuals.unknowns
-    between = [interpolant(parameters, nodes, column) for column in columns]
     proof = "not all certified" if widest is None else f"each within {sp.Float(widest, 2)} of a true root"
     words = f"found at {len(nodes)} values of {', '.join(p.name for p in parameters)}, {proof}; interpolated between"
-    table = Table(parameters, tuple(nodes), tuple(u.name for u in unknowns), tuple(map(tuple, rows)))
-    found_ = dict(zip(unknowns, between, strict=True))
-    return Solution(
-        assembly.numerator.subs(found_),
-        assembly.denominator.subs(found_),
-        numbers=Numbers(assembly.numerical, words, _guess(assembly, parameters, nodes, columns), table),
-    )
+    table = Table(parameters, tuple(nodes), unknowns, tuple(map(tuple, rows)), assembly.numerator, assembly.denominator)
+    polynomials = [interpolant(parameters, nodes, column) for column in columns]
+    error = max(p.error for p in polynomials)
+    return _Tabulated(table, tuple(p.shortened() for p in polynomials), error, words, _guess(assembly, table))
+
+
+def _solution(assembly: Assembly, found: _Tabulated) -> Solution:
+    values = dict(zip(found.table.unknowns, found.between, strict=True))
+    numbers = Numbers(assembly.numerical, found.words, found.guess, found.table)
+    return Solution(assembly.numerator.subs(values), assembly.denominator.subs(values), numbers=numbers)
 
 
 def _scaled(rows: list[tuple[sp.Rational, ...]]) -> list[tuple[sp.Rational, ...]]:
@@ -81,16 +114,14 @@ def _scaled(rows: list[tuple[sp.Rational, ...]]) -> list[tuple[sp.Rational, ...]
     return [tuple(value / row[pivot] for value in row) for row in rows]
 
 
-def _guess(
-    assembly: Assembly, parameters: tuple[Parameter, ...], nodes: list[Node], columns: Sequence[Sequence[sp.Rational]]
-) -> Solution | None:
+def _guess(assembly: Assembly, table: Table) -> Solution | None:
     """Coefficients that look like rational functions of one parameter, or of its root, for the caller to verify."""
-    if len(parameters) > 1:
+    if len(table.parameters) > 1:
         return None
-    places = [node[0] for node in nodes]
+    places = [node[0] for node in table.nodes]
     found = {}
-    for unknown, column in zip(assembly.residuals.unknowns, columns, strict=True):
-        formula = recognised_function(parameters[0], places, column)
+    for unknown, column in zip(table.unknowns, zip(*table.rows, strict=True), strict=True):
+        formula = recognised_function(table.parameters[0], places, column)
         if formula is None:
             return None
         found[unknown] = formula

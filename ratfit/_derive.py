@@ -150,7 +150,7 @@ def _assembled(problem: Problem, route: str, found: list[Candidate], shown: tupl
     elif accepted:
         status = "family" if accepted[0].free else "unique"
     else:
-        status = "rejected" if rejected else "inconsistent"
+        status = "rejected" if rejected or route == "nonlinear" else "inconsistent"  # starts prove no clash
     return Fit(problem, status, route, accepted, rejected, equations=shown)
 
 

@@ -83,14 +83,14 @@ def completion(
     leftover: list[sp.Expr] = []
     for equation in sorted(equations, key=lambda e: e.height):
         jet = next(j for j in jets if same(j.at, equation.at))
-        for k, residual in enumerate(equation.residuals(x)):
+        for k, residual in enumerate(equation.residuals_there(x)):
             top = equation.height + k
             for order in range(top):
                 if order not in jet.known and vanishes(jet.at, order):
                     jet.known[order] = sp.S.Zero
                 elif order not in jet.known:
                     open_(jet, order)
-            leftover += _resolved(residual.subs(x, equation.at), jet, top, open_)
+            leftover += _resolved(residual, jet, top, open_)
     facts = tuple(fact for jet in jets for fact in jet.facts())
     return Completion(facts, tuple(symbols), tuple(leftover))
 

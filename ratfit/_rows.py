@@ -62,7 +62,7 @@ def _equation_rows(system: System, equation: Equation) -> list[Row]:
     """A linear differential equation of a polynomial: its coefficients at the place times the derivatives."""
     x, found = system.problem.variable, []
     jets = [_plain_derivatives(system, equation.at, k) for k in range(equation.height + equation.order + 1)]
-    for residual in (r.subs(x, equation.at) for r in equation.residuals(x)):
+    for residual in equation.residuals_there(x):
         free = residual.xreplace(dict.fromkeys(JET, sp.S.Zero))
         slopes = [(k, slope) for k in range(len(jets)) if (slope := sp.diff(residual, JET[k])) != 0]
         row = [

@@ -152,7 +152,7 @@ def residuals(system: System, condition: AbstractCondition, demand: sp.Expr) -> 
     if isinstance(condition, Equation):
         jet = [_derivative(system, condition.at, k) for k in range(condition.height + condition.order + 1)]
         put_in = dict(zip(JET, jet, strict=False))
-        return [residual.subs(x, condition.at).xreplace(put_in) for residual in condition.residuals(x)]
+        return [residual.xreplace(put_in) for residual in condition.residuals_there(x)]
     assert isinstance(condition, AbstractPointCondition)
     return [_derivative(system, condition.at, condition.order) - demand]
 

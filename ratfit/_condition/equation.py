@@ -80,6 +80,16 @@ class Equation(AbstractCondition):
             found.append(sp.diff(last, x) + sp.Add(*(JET[j + 1] * sp.diff(last, JET[j]) for j in range(top + 1))))
         return found
 
+    def residuals_there(self, x: sp.Symbol) -> list[sp.Expr]:
+        """The same at the place, in JET alone; RatfitError where one has no value there."""
+        found = [residual.subs(x, self.at) for residual in self.residuals(x)]
+        if any(residual.has(sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I) for residual in found):
+            raise RatfitError(
+                f"equation {self.residual}: it, or a derivative up to order {self.order}, has no real value at "
+                f"{self.at}; move it or lower its order"
+            )
+        return found
+
     def check(self, domain: tuple[sp.Expr, sp.Expr], what: str = "domain") -> None:
         check_inside("equation at", self.at, domain, what)
 

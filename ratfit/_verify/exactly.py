@@ -50,7 +50,7 @@ def _equation_residuals(system: System, equation: Equation, candidate: Reduced) 
     orders = range(equation.height + equation.order + 1)
     jet = {JET[k]: _derivative(system, Derivative(equation.at, k), candidate) for k in orders}
     x = system.problem.variable
-    return [residual.subs(x, equation.at).xreplace(jet) for residual in equation.residuals(x)]
+    return [residual.xreplace(jet) for residual in equation.residuals_there(x)]
 
 
 def _limit(system: System, limit: Limit, candidate: Reduced) -> sp.Expr:

@@ -41,7 +41,7 @@ def assembled(system: System) -> Assembly | None:
     free: few unknowns, and no condition that is linear is ever only nearly kept.
     """
     if not system.fraction:
-        return _assembly(system, system.shape, system.pairs)
+        return _with_linear_unknowns_solved(_assembly(system, system.shape, system.pairs))
     linear, rest = split(system)
     if any(not e.free_symbols & set(system.completion.symbols) and is_zero(e) is False for e in _left(system)):
         return None
@@ -122,6 +122,30 @@ def _assembly(system: System, shape: Shape, rest: list[Demanded]) -> Assembly:
         parts.append(Residual(sp.Add(*(u**2 for u in shape.unknowns)) - 1))
     found = Residuals(system.problem.variable, shape.unknowns, tuple(parts), shape.homogeneous)
     return Assembly(shape.numerator, shape.denominator, found, tuple(c for c, _ in rest))
+
+
+def _with_linear_unknowns_solved(assembly: Assembly) -> Assembly:
+    """Unknowns that stand alone and linear in a residual are put in: exact, and no search for their size."""
+    residuals = assembly.residuals
+    for part in residuals.parts:
+        for unknown in residuals.unknowns if not part.moments else ():
+            slope = sp.diff(part.plain, unknown)
+            if slope == 0 or slope.free_symbols & set(residuals.unknowns) or is_zero(slope) is not False:
+                continue
+            value = {unknown: sp.expand(-part.plain.subs(unknown, 0) / slope)}
+            others = tuple(p.subs(value) for p in residuals.parts if p is not part)
+            left = tuple(u for u in residuals.unknowns if u != unknown)
+            if not left:
+                return assembly
+            return _with_linear_unknowns_solved(
+                replace(
+                    assembly,
+                    numerator=assembly.numerator.subs(value),
+                    denominator=assembly.denominator.subs(value),
+                    residuals=replace(residuals, unknowns=left, parts=others),
+                )
+            )
+    return assembly
 
 
 def _too_few(missing: int) -> str:

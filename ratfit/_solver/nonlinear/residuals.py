@@ -30,6 +30,11 @@ class Residual:
     plain: sp.Expr
     moments: tuple[Moment, ...] = ()
 
+    def subs(self, values: Mapping[sp.Symbol, sp.Expr]) -> Residual:
+        """With expressions in place of unknowns, evaluated again."""
+        moments = tuple(Moment(m.integrand.subs(values), m.low, m.high) for m in self.moments)
+        return Residual(self.plain.subs(values), moments)
+
     def xreplace(self, values: Mapping[sp.Symbol, sp.Expr]) -> Residual:
         return Residual(self.plain.xreplace(values), tuple(m.xreplace(values) for m in self.moments))
 

@@ -9,7 +9,7 @@ import sympy as sp
 
 from ratfit._parse import RatfitError
 from ratfit._solver.nonlinear.assembly import Assembly, assembled
-from ratfit._solver.solution import Numbers, Solution
+from ratfit._solver.solution import Numbers, Solution, Undecided
 from ratfit._system import System
 
 MOST = 24
@@ -30,7 +30,10 @@ def solve_nonlinear(system: System, seed: int = 0) -> Iterator[Solution]:
     """
     assembly = assembled(system)
     if assembly is None:
-        return
+        raise Undecided(
+            "the conditions that are linear in the coefficients clash among themselves (values, slopes, limits): "
+            "drop one of them or raise a degree"
+        )
     residuals = assembly.residuals
     if residuals.homogeneous and len(residuals.unknowns) == 1:
         only = {residuals.unknowns[0]: sp.S.One}

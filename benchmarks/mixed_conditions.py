@@ -74,9 +74,8 @@ def main() -> None:
         fit, ours = timed(lambda problem=problem: rf.derive(problem))
         _, theirs = timed(lambda stated=stated: by_sympy(stated))
         assert fit.status == "unique" and sp.cancel(fit.expression - f) == 0
-        print(
-            f"  seed {seed}: {len(stated)} conditions          {ours:6.2f} s      {theirs:6.2f} s      {ours / theirs:6.2f}"
-        )
+        head = f"  seed {seed}: {len(stated)} conditions"
+        print(f"{head:33} {ours:6.2f} s      {theirs:6.2f} s      {ours / theirs:6.2f}")
     print("\ncard                  derive   route")
     for card in cards():
         fit, seconds = timed(lambda card=card: rf.derive(card.problem))

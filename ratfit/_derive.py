@@ -24,6 +24,9 @@ from ratfit._verify import verify
 AGREEMENT = sp.Float("1e-35")
 """Candidates that are nearer to each other than this wherever one looks may be one function."""
 
+INTERPOLATED = sp.Float("1e-6")
+"""The same for candidates that are interpolated."""
+
 POLYNOMIAL_SECONDS = 4.0
 """How long the polynomial route may take, and at most half of the time there is, before many starts are tried."""
 
@@ -123,7 +126,8 @@ def _distinct(everything: list[Candidate]) -> list[Candidate]:
 def _same_function(a: Candidate, b: Candidate) -> bool:
     if a.expression == b.expression:
         return True
-    if bool(a.reason) != bool(b.reason) or a.free or b.free or not _agree(a.expression, b.expression):
+    nearness = INTERPOLATED if a.table and b.table else AGREEMENT
+    if bool(a.reason) != bool(b.reason) or a.free or b.free or not _agree(a.expression, b.expression, nearness):
         return False
     if a.certificate or b.certificate:
         return True  # to the last digit: algebra has no use for numbers that long
@@ -133,11 +137,11 @@ def _same_function(a: Candidate, b: Candidate) -> bool:
         return False
 
 
-def _agree(a: sp.Expr, b: sp.Expr) -> bool:
-    """Whether two expressions agree to AGREEMENT at a few places of all their symbols."""
+def _agree(a: sp.Expr, b: sp.Expr, nearness: sp.Float) -> bool:
+    """Whether two expressions are that near to each other, relative to their size, at a few places of all symbols."""
     for values in sample_values(a.free_symbols | b.free_symbols, ("1/7", "4/7", "9/11")):
         first, second = (sp.N(e.xreplace(values), DIGITS) for e in (a, b))
-        if not abs(first - second) <= AGREEMENT * (1 + abs(first)):
+        if not abs(first - second) <= nearness * (1 + abs(first)):
             return False
     return True
 

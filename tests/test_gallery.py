@@ -82,9 +82,8 @@ def test_the_azimuth_factor_as_printed_fails_its_normalisation():
     fit = rf.derive("azimuth-as-printed")
     assert fit.expression is None and "without the integral" in fit.reasons[-1]
     printed = card("azimuth-as-printed").published
-    function = sp.lambdify(
-        [next(s for s in printed.free_symbols if s.name == name) for name in "wp"], printed, "mpmath"
-    )
+    symbols = [next(s for s in printed.free_symbols if s.name == name) for name in "wp"]
+    function = sp.lambdify(symbols, printed, "mpmath")
     found = mpmath.quad(lambda angle: function(mpmath.cos(angle), mpmath.mpf(1) / 2), [0, mpmath.pi / 2])
     assert abs(found - mpmath.sqrt(0.5) * mpmath.ellipk(0.75)) < 1e-12
     assert abs(found - mpmath.pi / 2) > 0.04

@@ -15,6 +15,9 @@ import ratfit as rf
 DIGITS = 40
 TIMEOUT = 60
 
+BETWEEN = 1e-6
+"""What interpolation between the nodes of a parameter may miss."""
+
 RADIUS = re.compile(r"\d[eE]-\d\d")
 
 KNOWN: dict[int, str] = {}
@@ -42,7 +45,8 @@ def complaints(made: Recovery, fit: rf.Fit) -> list[str]:
     for candidate in fit.candidates:
         if candidate.certificate and not certified(candidate.certificate):
             found.append(f"not certified: {candidate.certificate}")
-        if any(not c.holds or c.residual is None or c.residual >= 10.0**-DIGITS for c in candidate.conditions):
+        limit = 10.0**-DIGITS if candidate.table is None else BETWEEN
+        if any(not c.holds or c.residual is None or c.residual >= limit for c in candidate.conditions):
             found.append(f"accepted with {[(c.holds, c.residual) for c in candidate.conditions]}")
         if failed := unkept(made.problem, candidate):
             found.append(f"accepted {candidate.expression}, which does not keep {failed}")
@@ -65,12 +69,23 @@ def is_original(made: Recovery, candidate: rf.Candidate) -> bool:
         return vanishes(candidate.expression - made.original)
     if made.exact:
         return False
-    nodes = [{m: sp.Rational(8, 7)}] if candidate.table is None else table_nodes(candidate)
-    return all(agrees(candidate.expression.xreplace(v), made.original.xreplace(v)) for v in nodes)
+    return all(agrees(f, made.original.xreplace(values)) for values, f in numerically(made.problem, candidate))
 
 
-def table_nodes(candidate: rf.Candidate) -> list[dict[sp.Symbol, sp.Expr]]:
-    return [dict(zip(candidate.table.parameters, node, strict=True)) for node in candidate.table.nodes]
+def numerically(problem: rf.Problem, candidate: rf.Candidate) -> list[tuple[dict[sp.Symbol, sp.Expr], sp.Expr]]:
+    """Values of the parameter, and the candidate there: at the nodes of its table, from its rows, if it has one."""
+    table = candidate.table
+    if table is None:
+        values = {
+            s: sp.Rational(1237, 1009) for s in (candidate.expression.free_symbols | set(problem.parameters)) - {x}
+        }
+        return [(values, candidate.expression.xreplace(values))]
+    found = []
+    for node, row in zip(table.nodes, table.rows, strict=True):
+        values = dict(zip(table.parameters, node, strict=True))
+        there = problem.form.factor * table.numerator / table.denominator
+        found.append((values, there.subs(dict(zip(table.unknowns, row, strict=True))).xreplace(values)))
+    return found
 
 
 def vanishes(difference: sp.Expr) -> bool:
@@ -107,14 +122,12 @@ def is_member(made: Recovery, family: rf.Candidate) -> bool:
 
 def unkept(problem: rf.Problem, candidate: rf.Candidate) -> list[str]:
     """The conditions that a candidate does not keep at 50 digits; for a parameter and free names somewhere."""
-    nodes = [{}] if candidate.table is None else table_nodes(candidate)[:: max(1, len(candidate.table.nodes) - 1)]
+    everywhere = numerically(problem, candidate)
     found = []
-    for node in nodes:
-        symbols = candidate.expression.free_symbols | set(problem.parameters)
-        values = {s: node.get(s, sp.Rational(1237, 1009)) for s in symbols - {x}}
+    for values, expression in everywhere[:: max(1, len(everywhere) - 1)]:
         with mpmath.workdps(50):
             for condition in problem.conditions:
-                error = misfit(problem, condition, candidate.expression, values)
+                error = misfit(problem, condition, expression, values)
                 if not error < mpmath.mpf(10) ** -(DIGITS - 3):
                     found.append(f"{condition} (off by {mpmath.nstr(error, 3)})")
     return found

@@ -1,7 +1,8 @@
 """Twelve mixed exact conditions: derive (verification included) against sympy.solve on the same cleared equations.
 
 Values, slopes, higher derivatives, a differential equation and the second term of an asymptote (which implies the
-first), read off random [6/6] fractions with rational coefficients. Then the time of every gallery card, the first derivation in this process.
+first), read off random [6/6] fractions with rational coefficients. Then the time of every gallery card, derived for
+the first time in this process.
 """
 
 import random

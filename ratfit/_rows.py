@@ -13,6 +13,7 @@ from ratfit._field import Field
 from ratfit._form import Shape
 from ratfit._integral import closed_integral, integral_parts, integrated
 from ratfit._jets import same
+from ratfit._pieces import smooth_pieces
 from ratfit._series import Laurent, factor_series, laurent, local_coordinate, taylor
 from ratfit._system import System, columns, is_finite_at
 
@@ -77,13 +78,12 @@ def _integral_row(system: System, condition: Integral, demand: sp.Expr) -> Row:
     problem = system.problem
     inside, rest = integral_parts(problem, condition)
     pairs, _ = columns(system.shape)
-    weighted = condition.weight * system.shape.factor
+    x, pieces = problem.variable, smooth_pieces(condition.weight * system.shape.factor, problem.variable, inside)
     if system.plain:
-        return [
-            integrated(weighted * above, problem.variable, inside) - (demand - rest) * below for above, below in pairs
-        ]
+        integrals = [sp.Add(*(integrated(w * above, x, over) for w, over in pieces)) for above, _ in pairs]
+        return [value - (demand - rest) * below for value, (_, below) in zip(integrals, pairs, strict=True)]
     denominator = pairs[-1][1]
-    row = [closed_integral(weighted * above, denominator, problem.variable, inside) for above, _ in pairs]
+    row = [sp.Add(*(closed_integral(w * above, denominator, x, over) for w, over in pieces)) for above, _ in pairs]
     row[-1] -= demand - rest
     return row
 
@@ -95,7 +95,33 @@ def limit_rows(system: System, limit: Limit, demand: sp.Expr, raised: int) -> tu
     are its series coefficients up to the order of Q's zero: the lowest that the columns have, raised while the rows
     themselves force that coefficient of Q to vanish, and `raised` times more.
     """
-    side = -1 if same(limit.at, system.problem.support()[1]) else 1
+    sides = sides_of(system, limit)
+    found, lead = _one_sided_rows(system, limit, demand, raised, sides[0])
+    if len(sides) == 2 and not _is_smooth(system, limit):
+        found = found + _one_sided_rows(system, limit, demand, raised, sides[1])[0]
+    return found, lead
+
+
+def sides_of(system: System, limit: Limit) -> tuple[int, ...]:
+    """From above (1) and below (-1), but from inside alone at an end of the support; infinity has one side."""
+    low, high = system.problem.support()
+    if limit.at.is_infinite or same(limit.at, low):
+        return (1,)
+    return (-1,) if same(limit.at, high) else (1, -1)
+
+
+def _is_smooth(system: System, limit: Limit) -> bool:
+    """Whether both sides of a place see the same series: of rational functions they do."""
+    parts = (
+        limit.scale,
+        limit.minus,
+        system.shape.factor,
+        *(part for pair in columns(system.shape)[0] for part in pair),
+    )
+    return all(part.is_rational_function(system.problem.variable) for part in parts)
+
+
+def _one_sided_rows(system: System, limit: Limit, demand: sp.Expr, raised: int, side: int) -> tuple[list[Row], Row]:
     series_to = partial(_series, system.shape, system.problem.variable, limit, side)
     order = lowest = min(v for v in map(_valuation, series_to(0).below) if v is not None)
     widest = lowest + 2 * len(columns(system.shape)[0])

@@ -34,7 +34,7 @@ def taylor(expression: sp.Expr, x: sp.Symbol, at: sp.Expr, order: int) -> list[s
     found = []
     for k in range(order + 1):
         value = expression.subs(x, at) / sp.factorial(k)
-        if value.has(sp.nan, sp.zoo, sp.oo):
+        if value.has(sp.nan, sp.zoo, sp.oo, -sp.oo, sp.AccumBounds):
             raise RatfitError(f"{expression} has no power series at {x} = {at}")
         found.append(value)
         expression = sp.diff(expression, x)

@@ -145,12 +145,12 @@ class Target:
 
     def integral(self, weight: sp.Expr, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
         """The integral of weight times the target; raises RatfitError when no closed form is found in time."""
+        from ratfit._pieces import smooth_pieces
+
         advice = "; state its value with equals"
-        integrand = weight * self.expression
+        pieces = smooth_pieces(weight * self.expression, self.variable, over)
         with TimeLimit(INTEGRAL_SECONDS) as limit:
-            value = sp.integrate(integrand, (self.variable, *over))
-            if not value.has(sp.Integral, sp.nan, sp.zoo, sp.oo):
-                value = self._confirmed_integral(integrand, over, value)
+            value = sp.Add(*(self._piece(integrand, between) for integrand, between in pieces))
         if limit.passed:
             raise RatfitError(f"no closed form of the target's integral within {INTEGRAL_SECONDS:g} s{advice}")
         if not value.is_finite and (value.is_infinite or value.has(sp.nan, sp.zoo, sp.oo)):
@@ -159,6 +159,12 @@ class Target:
             about = "" if value.free_symbols or not value.is_number else f", about {sp.N(value, 20)}"
             raise RatfitError(f"no closed form of the target's integral in ratfit's functions{about}{advice}")
         return value
+
+    def _piece(self, integrand: sp.Expr, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
+        value = sp.integrate(integrand, (self.variable, *over))
+        return (
+            value if value.has(sp.Integral, sp.nan, sp.zoo, sp.oo) else self._confirmed_integral(integrand, over, value)
+        )
 
     def _confirmed_integral(self, integrand: sp.Expr, over: tuple[sp.Expr, sp.Expr], value: sp.Expr) -> sp.Expr:
         """sympy's value, or our own for a fraction, where numbers confirm it; RatfitError otherwise."""

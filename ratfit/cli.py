@@ -38,7 +38,8 @@ def main(arguments: list[str] | None = None) -> None:
     except click.UsageError as error:
         _fail(error.format_message())
     except (KeyboardInterrupt, click.Abort):
-        print("\nratfit: interrupted; rows that bench has written are kept, --resume goes on", file=sys.stderr)
+        kept = "; rows that were written are kept, --resume goes on" if "bench" in sys.argv[1:2] else ""
+        print(f"\nratfit: interrupted{kept}", file=sys.stderr)
         sys.exit(130)
     except BrokenPipeError:  # the reader, `head` say, has seen enough
         sys.stderr.close()

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
+from itertools import pairwise
 
 import mpmath
 import pytest
+import scipy.integrate
 import sympy as sp
 
 import ratfit as rf
@@ -369,3 +371,36 @@ def test_an_integral_with_a_real_parameter():
     """sympy loses the logarithm and the arctangent of this one: (m + 2)*(log(2)/2 + 3*pi/4)."""
     fit = fit_of("(m+2)*(x+3)/(x**2+1)", "0 1", "0/0", integral=["weight=1"], parameter=["m=1/2:2"])
     assert same(fit.expression, "(m + 2)*(log(2)/2 + 3*pi/4)")
+
+
+@pytest.mark.parametrize("weight", ["sign(x-1/3)", "Max(x,1/3)", "floor(3*x)", "Abs(x-1/2)", "Heaviside(x-1/4)"])
+def test_weights_that_jump_or_bend(weight):
+    """A parabola with the values of the sine at both ends and one weighted integral, which scipy finds too."""
+    fit = fit_of("sin(x)", "0 1", "2", value=["0", "1"], integral=[f"weight={weight}"])
+    x = fit.problem.variable
+    function = fit.problem.conditions[-1].weight
+    at = [0, 0.25, 1 / 3, 0.5, 2 / 3, 1]
+    found, true = (
+        sum(scipy.integrate.quad(sp.lambdify(x, function * f, "math"), a, b)[0] for a, b in pairwise(at))
+        for f in (fit.expression, sp.sin(x))
+    )
+    assert fit.status == "unique" and abs(found - true) < 1e-9
+
+
+BOTH_SIDES = {
+    "scale": ("1/x", "0/1", {"limit": ["0;scale=Abs(x);equals=1"], "value": ["1"]}),
+    "factor": ("x", "1/1", {"factor": "sign(x)", "limit": ["0;equals=1"], "value": ["1"]}),
+}
+
+
+@pytest.mark.parametrize("name", BOTH_SIDES)
+def test_a_limit_inside_the_domain_has_two_sides(name):
+    target, form, stated = BOTH_SIDES[name]
+    assert fit_of(target, "-1 1", form, **stated).expression is None
+
+
+def test_limits_five_orders_down():
+    """x - x**3/6 + x**5/120 asked for by limits: the Pade approximant of the sine."""
+    limits = ["0;scale=1/x", "0;scale=1/x**3;minus=x", "0;scale=1/x**5;minus=x-x**3/6"]
+    fit = fit_of("sin(x)", "-1 1", "3/2", limit=limits)
+    assert same(fit.expression, "(60*x - 7*x**3)/(60 + 3*x**2)") and len(fit.advice) == 1

@@ -10,8 +10,9 @@ from ratfit._condition import JET, AbstractCondition, AbstractPointCondition, De
 from ratfit._field import Field, is_zero
 from ratfit._generators import sampled
 from ratfit._integral import closed_integral, integral_parts
-from ratfit._jets import same
 from ratfit._parse import RatfitError
+from ratfit._pieces import smooth_pieces
+from ratfit._rows import sides_of
 from ratfit._series import LOCAL, factor_series, local_coordinate, taylor
 from ratfit._system import System
 from ratfit._verify.candidate import Reduced
@@ -25,10 +26,11 @@ def found_exactly(system: System, condition: AbstractCondition, candidate: Reduc
     x = system.problem.variable
     if isinstance(condition, Integral):
         over, rest = integral_parts(system.problem, condition)
-        weighted = condition.weight * candidate.factor * candidate.numerator
-        return [closed_integral(weighted, candidate.denominator, x, over) + rest]
+        pieces = smooth_pieces(condition.weight * candidate.factor, x, over)
+        parts = (closed_integral(w * candidate.numerator, candidate.denominator, x, range_) for w, range_ in pieces)
+        return [sp.Add(*parts) + rest]
     if isinstance(condition, Limit):
-        return [_limit(system, condition, candidate)]
+        return [_limit(system, condition, candidate, side) for side in sides_of(system, condition)]
     if isinstance(condition, Equation):
         return _equation_residuals(system, condition, candidate)
     assert isinstance(condition, AbstractPointCondition)
@@ -53,10 +55,9 @@ def _equation_residuals(system: System, equation: Equation, candidate: Reduced) 
     return [residual.xreplace(jet) for residual in equation.residuals_there(x)]
 
 
-def _limit(system: System, limit: Limit, candidate: Reduced) -> sp.Expr:
-    """The limit from the lowest powers of numerator and denominator in the local coordinate."""
+def _limit(system: System, limit: Limit, candidate: Reduced, side: int) -> sp.Expr:
+    """The limit from one side, from the lowest powers of numerator and denominator in the local coordinate."""
     x = system.problem.variable
-    side = -1 if same(limit.at, system.problem.support()[1]) else 1
     scale, minus = limit.scale, limit.minus
     above = scale * (candidate.factor * candidate.numerator - minus * candidate.denominator)
     parts = local_coordinate([above, candidate.denominator], x, limit.at, side)

@@ -11,7 +11,9 @@ from ratfit._condition import JET, AbstractCondition, AbstractPointCondition, Eq
 from ratfit._generators import DIGITS
 from ratfit._integral import integral_parts
 from ratfit._parse import RatfitError
-from ratfit._poles import endpoint, function_of, multiprecise, polynomial_roots
+from ratfit._pieces import smooth_pieces
+from ratfit._poles import endpoint, function_of, multiprecise
+from ratfit._rows import sides_of
 from ratfit._solver.nonlinear.residuals import Moment
 from ratfit._system import System
 from ratfit._target import sample_values
@@ -19,8 +21,10 @@ from ratfit._target import sample_values
 BALL_DIGITS = 20
 """Digits beyond those of a check that an integral's ball is computed with."""
 
-DISTANCE, LIMIT_DIGITS = mpmath.mpf(10) ** -150, 500
-"""How far from its place a limit is looked at, and with how many digits: a root of the distance is still tiny."""
+DISTANCE, LIMIT_DIGITS = mpmath.mpf(10) ** -100, 1200
+"""How far from its place a limit is looked at, and with how many digits: a root of the distance is still tiny, and
+terms that cancel may be ten orders larger than what is left.
+"""
 
 
 Values = Mapping[sp.Symbol, sp.Expr]
@@ -59,9 +63,11 @@ def _numerical(
         (low, high), rest = integral_parts(system.problem, condition)
         integrand = (condition.weight * expression).xreplace(values)
         ends = low.xreplace(values), high.xreplace(values)
-        return [_integral(integrand, x, ends) + multiprecise(rest.xreplace(values))]
+        pieces = smooth_pieces(integrand, x, ends)
+        return [mpmath.fsum(_integral(f, x, over) for f, over in pieces) + multiprecise(rest.xreplace(values))]
     if isinstance(condition, Limit):
-        return [_limit(system, condition, (expression - condition.minus) * condition.scale, values)]
+        function = (expression - condition.minus) * condition.scale
+        return [_limit(system, condition, function, values, side) for side in sides_of(system, condition)]
     if isinstance(condition, Equation):
         return _equation_residuals(system, condition, expression, values)
     assert isinstance(condition, AbstractPointCondition)
@@ -82,15 +88,13 @@ def _integral(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -
                 return mpmath.ldexp(mpmath.mpf(int(mantissa)), int(exponent))
     except RatfitError:
         pass
-    low, high = map(endpoint, over)
-    return mpmath.quad(function_of(integrand, x, {}), _smooth_pieces(integrand, x, low, high))
+    return mpmath.quad(function_of(integrand, x, {}), [endpoint(end) for end in over])
 
 
-def _limit(system: System, limit: Limit, function: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> mpmath.mpf:
+def _limit(system: System, limit: Limit, function: sp.Expr, values: Values, side: int) -> mpmath.mpf:
     """The function a tiny distance from the place of the limit."""
     with mpmath.workdps(LIMIT_DIGITS):
         at = limit.at.xreplace(values)
-        side = -1 if at == system.problem.support()[1].xreplace(values) else 1
         place = (1 if at is sp.oo else -1) / DISTANCE if at.is_infinite else multiprecise(at) + side * DISTANCE
         try:
             return function_of(function, system.problem.variable, values)(place)
@@ -128,9 +132,3 @@ def _derivative(
             return mpmath.diff(lambda distance: function(multiprecise(at) + distance), 0, order, direction=side)
     except ZeroDivisionError:
         raise RatfitError(f"the candidate has a pole at {x} = {place}") from None
-
-
-def _smooth_pieces(weight: sp.Expr, x: sp.Symbol, low: mpmath.mpf, high: mpmath.mpf) -> list[mpmath.mpf]:
-    """The ends of a range and the kinks of the weight between them: quadrature needs smooth pieces."""
-    kinks = [r.real for a in weight.atoms(sp.Abs) if a.args[0].is_polynomial(x) for r in polynomial_roots(a.args[0], x)]
-    return [low, *sorted(k for k in kinks if low < k < high), high]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import sympy as sp
 
@@ -13,12 +12,12 @@ from ratfit._form import Shape
 from ratfit._integral import integral_parts
 from ratfit._jets import same
 from ratfit._parse import RatfitError
+from ratfit._pieces import smooth_pieces
 from ratfit._rows import rows
 from ratfit._solver.linear import fractions, null_space
 from ratfit._solver.nonlinear.residuals import Moment, Residual, Residuals
 from ratfit._solver.solution import Undecided
 from ratfit._system import Demanded, System, columns, completed, of_pairs, residuals
-from ratfit._target import sample_values
 
 
 @dataclass(frozen=True)
@@ -170,15 +169,5 @@ def _integral(system: System, condition: Integral, demand: sp.Expr) -> Residual:
     """The moment, in pieces between the kinks of the weight."""
     inside, rest = integral_parts(system.problem, condition)
     integrand = condition.weight * system.shape.factor * system.shape.numerator / system.shape.denominator
-    places = [inside[0], *_kinks(condition.weight, system.problem.variable, inside), inside[1]]
-    pieces = pairwise(places)
-    return Residual(rest - demand, tuple(Moment(integrand, low, high) for low, high in pieces))
-
-
-def _kinks(weight: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> list[sp.Expr]:
-    """Where the argument of an absolute value in the weight vanishes inside the range, in order."""
-    arguments = [a.args[0] for a in weight.atoms(sp.Abs) if a.args[0].is_polynomial(x) and sp.degree(a.args[0], x) == 1]
-    found = {-sp.Poly(a, x).nth(0) / sp.Poly(a, x).nth(1) for a in arguments}
-    values = sample_values({s for e in (*found, *over) for s in e.free_symbols}, ("3/7",))[0]
-    inside = [k for k in found if over[0].xreplace(values) < k.xreplace(values) < over[1].xreplace(values)]
-    return sorted(inside, key=lambda k: k.xreplace(values))
+    pieces = smooth_pieces(integrand, system.problem.variable, inside)
+    return Residual(rest - demand, tuple(Moment(piece, low, high) for piece, (low, high) in pieces))

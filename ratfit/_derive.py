@@ -21,6 +21,9 @@ from ratfit._system import System, equations, polynomial_equations
 from ratfit._target import sample_values
 from ratfit._verify import verify
 
+TIDYING_SECONDS = 1.0
+"""How long candidates may be compared after the time has run out."""
+
 AGREEMENT = sp.Float("1e-35")
 """Candidates that are nearer to each other than this wherever one looks may be one function."""
 
@@ -61,7 +64,9 @@ def derive(problem: Problem | str | Path, *, route: str = "auto", timeout: float
 
 def _out_of_time(problem: Problem, known: _Known, timeout: float | None) -> Fit:
     so_far = ", ".join(f"{k} {v}" for k, v in known.words.items()) or "the target's own data were not found"
-    kept = _distinct(known.candidates)
+    kept = known.candidates
+    with TimeLimit(TIDYING_SECONDS):
+        kept = _distinct(known.candidates)
     found = [c for c in kept if not c.reason]
     shown = [str(c.expression)[:200] for c in found[:3]] + ["..."] * (len(found) > 3)
     names = f"; found so far: {', '.join(shown)}" if found else ""
@@ -126,6 +131,8 @@ def _distinct(everything: list[Candidate]) -> list[Candidate]:
 def _same_function(a: Candidate, b: Candidate) -> bool:
     if a.expression == b.expression:
         return True
+    if a.reason and not (a.conditions and b.conditions):
+        return False  # never verified, complex ones mostly: to compare these takes longer than it is worth
     nearness = INTERPOLATED if a.table and b.table else AGREEMENT
     if bool(a.reason) != bool(b.reason) or a.free or b.free or not _agree(a.expression, b.expression, nearness):
         return False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import sympy as sp
 
@@ -33,7 +33,7 @@ def smooth_pieces(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr
             return [(integrand, over)]
         cuts |= found
     places = [over[0], *_ordered(cuts, over), over[1]]
-    return [(_decided(integrand, calls, x, (a, b)), (a, b)) for a, b in zip(places, places[1:], strict=False)]
+    return [(_decided(integrand, calls, x, (a, b)), (a, b)) for a, b in pairwise(places)]
 
 
 def _cuts(call: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -> set[sp.Expr] | None:
@@ -75,8 +75,8 @@ def _ordered(cuts: set[sp.Expr], over: tuple[sp.Expr, sp.Expr]) -> list[sp.Expr]
     orders = set()
     for values in sample_values(symbols, INSIDE):
         low, high = (end.xreplace(values) for end in over)
-        here = {cut: cut.xreplace(values) for cut in cuts}
-        orders.add(tuple(sorted((c for c in cuts if low < here[c] < high), key=lambda c, here=here: sp.N(here[c], 30))))
+        inside = [(sp.N(here, 30), cut) for cut in cuts if low < (here := cut.xreplace(values)) < high]
+        orders.add(tuple(cut for _, cut in sorted(inside, key=lambda pair: pair[0])))
     if len(orders) > 1:
         raise RatfitError("the kinks of an integrand change places within the ranges of the parameters; narrow them")
     return list(orders.pop())

@@ -162,9 +162,8 @@ class Target:
 
     def _piece(self, integrand: sp.Expr, over: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
         value = sp.integrate(integrand, (self.variable, *over))
-        return (
-            value if value.has(sp.Integral, sp.nan, sp.zoo, sp.oo) else self._confirmed_integral(integrand, over, value)
-        )
+        unfinished = value.has(sp.Integral, sp.nan, sp.zoo, sp.oo)
+        return value if unfinished else self._confirmed_integral(integrand, over, value)
 
     def _confirmed_integral(self, integrand: sp.Expr, over: tuple[sp.Expr, sp.Expr], value: sp.Expr) -> sp.Expr:
         """sympy's value, or our own for a fraction, where numbers confirm it; RatfitError otherwise."""

@@ -79,7 +79,7 @@ def _degree_drops(factor: sp.Expr, polynomial: sp.Expr, unknowns: Sequence[sp.Sy
 
 def _factors(polynomial: sp.Expr) -> list[tuple[sp.Expr, int]]:
     """Irreducible factors over the rational functions of the constants, taken as the symbols of the exact field."""
-    constants = {c: sp.Dummy() for c in _constants(polynomial)}
+    constants = {c: sp.Dummy() for c in sorted(_constants(polynomial), key=str)}
     _, factors = sp.factor_list(polynomial.xreplace(constants))
     back = {d: c for c, d in constants.items()}
     return [(f.xreplace(back), k) for f, k in factors]
@@ -210,7 +210,7 @@ def _normal(value: sp.Expr) -> sp.Expr:
 
 def _by_groebner(polynomials, unknowns) -> Iterator[tuple[sp.Symbol, sp.Expr, list[sp.Expr]]]:
     """A lexicographic basis: its last equation is in one unknown, or else that unknown is free."""
-    constants = {c: sp.Dummy(positive=True) for p in polynomials for c in _constants(p)}
+    constants = {c: sp.Dummy(positive=True) for p in polynomials for c in sorted(_constants(p), key=str)}
     back = {d: c for c, d in constants.items()}
     domain_symbols = sorted(
         {s for p in polynomials for s in p.xreplace(constants).free_symbols} - set(unknowns), key=str

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from ratfit._condition import AbstractCondition, AbstractPointCondition, Equation, Integral, Limit
+from ratfit._condition import AbstractCondition, AbstractPointCondition, Equation, Integral, Limit, describe
 from ratfit._field import is_zero
 from ratfit._form import Shape
 from ratfit._integral import integral_parts
@@ -114,13 +114,26 @@ def _clashes(system: System, unknowns: tuple[sp.Symbol, ...]) -> bool:
 def _assembly(system: System, shape: Shape, rest: list[Demanded]) -> Assembly:
     """Raises Undecided for a condition that no residual is known for, and where residuals are too few."""
     there = replace(system, shape=shape)
-    parts = [part for condition, demand in rest for part in _parts(there, condition, demand)]
+    parts = []
+    for condition, demand in rest:
+        parts += [part for part in _parts(there, condition, demand) if not _is_kept_anyway(part, condition, shape)]
     if len(shape.unknowns) > len(parts) + shape.homogeneous:
         raise Undecided(_too_few(len(shape.unknowns) - len(parts) - shape.homogeneous))
     if shape.homogeneous:
         parts.append(Residual(sp.Add(*(u**2 for u in shape.unknowns)) - 1))
     found = Residuals(system.problem.variable, shape.unknowns, tuple(parts), shape.homogeneous)
     return Assembly(shape.numerator, shape.denominator, found, tuple(c for c, _ in rest))
+
+
+def _is_kept_anyway(part: Residual, condition: AbstractCondition, shape: Shape) -> bool:
+    """Whether a residual is zero whatever the unknowns are; Undecided where it is anything else without them."""
+    if part.moments or part.plain.has(*shape.unknowns):
+        return False
+    if is_zero(part.plain) is False:
+        raise Undecided(
+            f"no member of this form keeps the {describe(condition)}: it is off by {part.plain} in all of them"
+        )
+    return True
 
 
 def _with_linear_unknowns_solved(assembly: Assembly) -> Assembly:

@@ -99,8 +99,7 @@ def _decided(integrand: sp.Expr, calls: list[sp.Expr], x: sp.Symbol, over: tuple
 
 def _branch(call: sp.Expr, place: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
     if isinstance(call, (sp.Min, sp.Max)):
-        best = (min if isinstance(call, sp.Min) else max)(call.args, key=lambda a: sp.N(a.xreplace(place), 30))
-        return best
+        return (min if isinstance(call, sp.Min) else max)(call.args, key=lambda a: sp.N(a.xreplace(place), 30))
     value = sp.N(call.args[0].xreplace(place), 30)
     if isinstance(call, sp.Abs):
         return call.args[0] if value > 0 else -call.args[0]

@@ -126,4 +126,4 @@ def _guess(assembly: Assembly, table: Table) -> Solution | None:
             return None
         found[unknown] = formula
     whole = assembly.numerator.subs(found) / assembly.denominator.subs(found)
-    return Solution(*sp.fraction(sp.cancel(whole) if whole.is_rational_function() else whole))
+    return Solution(*sp.fraction(sp.factor(whole) if whole.is_rational_function() else whole))

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from ratfit._condition import AbstractCondition, AbstractPointCondition, Equation, Integral, Limit, describe
+from ratfit._deadline import TimeLimit
 from ratfit._field import is_zero
 from ratfit._form import Shape
 from ratfit._integral import integral_parts
 from ratfit._jets import same
 from ratfit._parse import RatfitError
 from ratfit._pieces import smooth_pieces
-from ratfit._rows import rows
+from ratfit._rows import rows, sides_of
+from ratfit._series import LOCAL, local_coordinate
 from ratfit._solver.linear import fractions, null_space
 from ratfit._solver.nonlinear.residuals import Moment, Residual, Residuals
 from ratfit._solver.solution import Undecided
 from ratfit._system import Demanded, System, columns, completed, of_pairs, residuals
+
+LIMIT_SECONDS = 3.0
+"""How long sympy may look for the limit of a form with unknowns."""
 
 
 @dataclass(frozen=True)
@@ -172,10 +178,37 @@ def _parts(system: System, condition: AbstractCondition, demand: sp.Expr) -> lis
     if isinstance(condition, Integral):
         return [_integral(system, condition, demand)]
     if isinstance(condition, Limit):
-        raise Undecided(
-            f"a limit of this form (at {condition.place}) is no formula of its unknowns; state values or slopes instead"
-        )
+        return [Residual(limit - demand) for limit in _limits(system, condition)]
     return [Residual(residual) for residual in residuals(system, condition, demand)]
+
+
+def _limits(system: System, condition: Limit) -> list[sp.Expr]:
+    """The limit from each side as a formula of the unknowns, taken for positive, or else for negative.
+
+    exp(-b*x) tends to 0 for a positive b alone: whether the signs are those of the solution, verifying tells.
+    """
+    function = (system.shape.expression - condition.minus) * condition.scale
+    found = []
+    for side in sides_of(system, condition):
+        (moved,) = local_coordinate([function], system.problem.variable, condition.at, side)
+        limit = next((value for sign in (1, -1) if (value := _signed_limit(system, moved, sign)) is not None), None)
+        if limit is None:
+            raise Undecided(
+                f"the limit of this form at {condition.place} is no formula of its unknowns, whether they are positive "
+                "or negative; state values or slopes instead"
+            )
+        found.append(limit)
+    return found
+
+
+def _signed_limit(system: System, moved: sp.Expr, sign: int) -> sp.Expr | None:
+    positive = {u: sp.Dummy(u.name, positive=True) for u in system.shape.unknowns}
+    back = {dummy: sign * u for u, dummy in positive.items()}
+    value = sp.nan
+    with TimeLimit(LIMIT_SECONDS), suppress(NotImplementedError, ValueError, RecursionError):
+        value = sp.limit(moved.xreplace({u: sign * dummy for u, dummy in positive.items()}), LOCAL, 0, "+")
+    known = not value.has(sp.nan, sp.oo, -sp.oo, sp.zoo, sp.Limit, sp.AccumBounds, sp.sign)
+    return value.xreplace(back) if known else None
 
 
 def _integral(system: System, condition: Integral, demand: sp.Expr) -> Residual:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import time
 from itertools import pairwise
 
 import mpmath
 import pytest
 import scipy.integrate
+import scipy.optimize
 import sympy as sp
 
 import ratfit as rf
@@ -405,3 +407,43 @@ def test_limits_five_orders_down():
     limits = ["0;scale=1/x", "0;scale=1/x**3;minus=x", "0;scale=1/x**5;minus=x-x**3/6"]
     fit = fit_of("sin(x)", "-1 1", "3/2", limit=limits)
     assert same(fit.expression, "(60*x - 7*x**3)/(60 + 3*x**2)") and len(fit.advice) == 1
+
+
+FORMS_WITH_LIMITS = {
+    "a saturating exponential": (
+        ("tanh(2*x)", "0 4", "a*(1-exp(-b*x))", {"unknowns": "a,b", "derivative": ["0"], "limit": ["oo"]}),
+        "1 - exp(-2*x)",
+    ),
+    "a root that grows like a line": (
+        (
+            *("x", "0 1", "sqrt(a*x**2+b*x+1)"),
+            {"unknowns": "a,b", "limit": ["oo;scale=1/x;equals=2"], "value": ["1;equals=3"]},
+        ),
+        "sqrt(4*x**2 + 4*x + 1)",
+    ),
+    "a condition that the form keeps by itself": (
+        ("tanh(x)", "0 1", "a*tanh(b*x)", {"unknowns": "a,b", "value": ["0", "1"], "derivative": ["0"]}),
+        "tanh(x)",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FORMS_WITH_LIMITS)
+def test_forms_that_are_no_fractions(name):
+    (target, on, form, stated), expected = FORMS_WITH_LIMITS[name]
+    assert any(same(c.expression, expected) for c in fit_of(target, on, form, **stated).candidates)
+
+
+def test_a_condition_that_no_member_of_the_form_can_keep():
+    stated = {"unknowns": "a,b", "value": ["0;equals=1", "1"], "derivative": ["0"]}
+    fit = fit_of("tanh(x)", "0 1", "a*tanh(b*x)", **stated)
+    assert fit.expression is None and "no member of this form keeps the value at 0" in fit.reasons[0]
+
+
+def test_two_parameters_make_a_table_of_two():
+    """q/(1 + b*x) with the integral p: q*log(1 + b)/b = p."""
+    words = {"unknowns": "a,b", "value": ["0;equals=q"], "integral": ["equals=p"]}
+    fit = fit_of("x", "0 1", "a/(1+b*x)", parameter=["p=1:1.2", "q=1.5:2"], **words)
+    assert len(fit.candidates[0].table.nodes) == 81
+    b = scipy.optimize.brentq(lambda b: 1.7 * math.log1p(b) / b - 1.1, 0.1, 5)
+    assert abs(fit(0.5, p=1.1, q=1.7) - 1.7 / (1 + b / 2)) < 1e-8

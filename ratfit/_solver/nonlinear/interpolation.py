@@ -12,7 +12,7 @@ from ratfit._target import Parameter
 
 DIGITS = 70
 
-SPARE = 3
+SPARE = 2
 """Digits that are kept beyond those that interpolation has right."""
 
 Powers = tuple[int, ...]

@@ -10,7 +10,7 @@ import sympy as sp
 from ratfit._candidates import candidates
 from ratfit._condition import Limit
 from ratfit._deadline import TimeLimit
-from ratfit._diagnosis import advice, contradiction, explained
+from ratfit._diagnosis import advice, contradiction, explained, remarks
 from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Fit
 from ratfit._generators import DIGITS
@@ -87,26 +87,29 @@ def _derived(problem: Problem, route: str, known: _Known, timeout: float | None,
     try:
         _collect(system, taken, known, seconds, seed)
     except (Undecided, RatfitError) as error:  # Related is a RatfitError too
-        if not (alternative and _found_by_starts(system, known, seed)):
+        reasons = (str(error), *(_tried_by_starts(system, known, seed) if alternative else [""]))
+        if reasons[1:]:
             if isinstance(error, RatfitError) and not isinstance(error, Related):
                 raise
-            return Fit(problem, "rejected", taken, reasons=(str(error),))
+            return Fit(problem, "rejected", taken, reasons=tuple(filter(None, reasons)))
         taken = known.route
     fit = _assembled(problem, taken, _distinct(known.candidates), _shown_equations(system, taken))
     if not fit.candidates:
         return explained(fit, route if taken != "nonlinear" else taken)
     _check_choice(fit, system)
-    return replace(fit, advice=advice(system, fit)) if taken == "linear" else fit
+    linear = advice(system, fit) if taken == "linear" else ()
+    return replace(fit, advice=(*linear, *remarks(system, fit)))
 
 
-def _found_by_starts(system: System, known: _Known, seed: int) -> bool:
-    """Whether the nonlinear route finds what the polynomial one could not."""
+def _tried_by_starts(system: System, known: _Known, seed: int) -> list[str]:
+    """Nothing where the nonlinear route finds what the polynomial one could not, else why it does not."""
     known.route = known.words["route"] = "nonlinear"
     try:
         _collect(system, "nonlinear", known, None, seed)
-    except (Undecided, RatfitError):
-        return False
-    return any(not candidate.reason for candidate in known.candidates)
+    except (Undecided, RatfitError) as error:
+        return [f"nonlinear route: {error}"]
+    found = any(not candidate.reason for candidate in known.candidates)
+    return [] if found else ["nonlinear route: many starts found nothing either, which proves nothing"]
 
 
 def _collect(system: System, route: str, known: _Known, seconds: float | None, seed: int) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import combinations
 
+import mpmath
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
@@ -14,6 +15,7 @@ from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivat
 from ratfit._deadline import TimeLimit
 from ratfit._field import is_zero, numerical_rank
 from ratfit._fit import Candidate, Fit
+from ratfit._generators import sampled
 from ratfit._jets import same
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
@@ -117,6 +119,32 @@ def advice(system: System, fit: Fit) -> tuple[str, ...]:
         if fit.status == "family" and not fit.choice:
             found += _completing(system, len(fit.free), ", ".join(map(str, fit.free)))
     return tuple(found)
+
+
+def remarks(system: System, fit: Fit) -> tuple[str, ...]:
+    """What a person should know of any answer: conditions that the target itself does not keep, poles not looked for."""
+    found: list[str] = []
+    with TimeLimit(ADVICE_SECONDS):
+        if contrary := [describe(c) for c, d in system.pairs if _is_contrary(system, c, d)]:
+            found.append(f"the target itself does not keep: {'; '.join(contrary)}")
+    opened = {s.name: describe(c) for c, s in system.completion.facts if s in fit.free}
+    if opened:
+        found.append("; ".join(f"{name} is the {what}" for name, what in opened.items()) + ", which nobody stated")
+    if fit.status == "family" and not fit.choice and fit.route != "power":
+        found.append("a family is not searched for poles: a choice (--set) is")
+    return tuple(found)
+
+
+def _is_contrary(system: System, condition: AbstractCondition, demand: sp.Expr) -> bool:
+    """Whether a condition that states its number at a place states another than the target's, by numbers."""
+    target = system.problem.target
+    if target is None or condition.equals is None or not isinstance(condition, AbstractPointCondition):
+        return False
+    try:
+        own = target.derivative(condition.at, condition.order)
+        return any(abs(value) > mpmath.mpf("1e-9") for value in sampled(own - demand))
+    except RatfitError:
+        return False
 
 
 def _for_free(system: System) -> list[AbstractCondition]:

@@ -106,7 +106,7 @@ class Field:
         if element.is_ground:
             return self._ring.ground_new(self._base.one / element.coeff(1))
         if len(self._relations) < self._ring.ngens:
-            raise RatfitError("a root divides by a root that is not known yet: no exact field holds these constants")
+            raise Related("some roots of the solution lie over others in a way that the exact field does not hold")
         unit = DomainMatrix([[self._base.one]] + [[self._base.zero]] * (self.degree - 1), (self.degree, 1), self._base)
         blocks = DomainMatrix(self._block(element), (self.degree, self.degree), self._base)
         try:

@@ -128,8 +128,10 @@ class Fit:
         """The fit's value; `values` give the parameters, and free coefficients (over a recorded choice), by name.
 
         A float gives a float, a NumPy or JAX array an array of the same shape and dtype. Values of parameters are not
-        held to their ranges. Raises RatfitError for a missing or unknown name.
+        held to their ranges, but where coefficients are interpolated in them. Raises RatfitError for a missing or
+        unknown name.
         """
+        self._check_interpolated(values)
         from ratfit._lower import lower
 
         kept = {s: v for s, v in self.choice.items() if s.name not in values}
@@ -147,6 +149,17 @@ class Fit:
         backend = "jax" if jax is not None and isinstance(at, jax.Array) else "numpy"
         function = lower(formula, [self.problem.variable, *symbols], backend)
         return function(at, *(values[s.name] for s in symbols))
+
+    def _check_interpolated(self, values: Mapping[str, float]) -> None:
+        table = self.candidates[0].table if self.candidates else None
+        for parameter in table.parameters if table is not None else ():
+            low, high = self.problem.parameters[parameter]
+            if parameter.name in values and not float(low) <= values[parameter.name] <= float(high):
+                given = f"{parameter.name} = {values[parameter.name]}"
+                raise RatfitError(
+                    f"{self.problem.name}: {given} is outside [{low}, {high}], where coefficients are interpolated; "
+                    "widen that range and derive again"
+                )
 
     def __repr__(self) -> str:
         found = "; ".join(self.reasons) if self.expression is None else self.expression

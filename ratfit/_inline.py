@@ -110,6 +110,8 @@ _SETTINGS = {
 
 
 def _condition(kind: str, text: str) -> dict[str, Any]:
+    if kind == "equation" and re.search(r"=\s*0\s*(;|$)", text.partition(";")[0]):
+        raise RatfitError(f"--equation {text}: write the residual alone, without = 0; it is what vanishes")
     place, settings = _settings(text, f"--{kind}", _SETTINGS[kind])
     table: dict[str, Any] = {"kind": kind, **settings}
     if kind == "equation":
@@ -117,7 +119,7 @@ def _condition(kind: str, text: str) -> dict[str, Any]:
     elif kind != "integral":
         table["at"] = place
     elif place:
-        raise RatfitError(f"--integral {text}: write weight=..., over=LOW,HIGH or equals=..., separated by semicolons")
+        table.setdefault("weight", place)
     if "over" in table:
         table["over"] = table["over"].split(",")
     if "order" in table:

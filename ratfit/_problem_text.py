@@ -28,6 +28,12 @@ def to_tables(problem: Problem) -> dict[str, Any]:
     return tables
 
 
+def at_parameters(tables: dict[str, Any], values: Mapping[str, str]) -> dict[str, Any]:
+    """The tables with numbers for some parameters: these become abbreviations."""
+    ranges = {name: range_ for name, range_ in tables.get("parameters", {}).items() if name not in values}
+    return {**tables, "parameters": ranges, "let": {**tables.get("let", {}), **values}}
+
+
 def form_table(form: AbstractForm) -> dict[str, Any]:
     """The [form] table of a form, without the keys that it leaves at their defaults."""
     table: dict[str, Any]

@@ -17,7 +17,9 @@ from ratfit._fit import Fit
 from ratfit._inline import Words, problem_of_words, settings_of, target_of_words
 from ratfit._parse import RatfitError, nearest
 from ratfit._problem import Problem
-from ratfit._target import Target
+from ratfit._problem_file import problem_of
+from ratfit._problem_text import at_parameters, to_tables
+from ratfit._target import Target, exact
 from ratfit.gallery import Card, card, find_problem, is_card, is_known
 from ratfit.report.progress import waiting
 
@@ -113,7 +115,7 @@ problem_options = _together(
         "settings",
         multiple=True,
         metavar="n=5",
-        help="A value for a free coefficient; in bench, for a parameter too.",
+        help="A value for a free coefficient, or for a parameter.",
     ),
     click.option("--route", default="auto", metavar="auto|linear|polynomial|power|nonlinear", help="Force a route."),
     click.option(
@@ -170,11 +172,15 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     ratfit derive eq19
     ratfit derive eq12 --route polynomial      the paper's own system, with its spurious root
     ratfit derive eq15 --set n=3               another choice of the free exponent
+    ratfit derive eq19 --set m=0.3             at one value of the parameter
     ratfit derive my.toml --format json
     ratfit derive "t**n" --parameter n=1:1000 --on 0 1 --form 1/1 --value 0 --value 1 --derivative 1
     """
     found, shown = _read(problem, degree, options)
-    found = found.with_choice(settings_of(settings))
+    stated = found
+    found = _with_settings(found, settings_of(settings))
+    if found.parameters != stated.parameters:
+        shown = None  # what is published has the parameters as symbols
     fit = _derived(found, options)
     if options["unique"] and fit.status in ("family", "several"):
         fit = _refused(fit)
@@ -182,6 +188,17 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     for line in fit.advice:
         print(f"ratfit: {line}", file=sys.stderr)
     return 0 if fit.expression is not None else 1
+
+
+def _with_settings(problem: Problem, settings: dict[str, str]) -> Problem:
+    """The problem with choices recorded, and at the values of parameters that are set."""
+    values = {p.name: settings[p.name] for p in problem.parameters if p.name in settings}
+    for parameter in problem.parameters:
+        value = exact(values.get(parameter.name, parameter.low), f"--set {parameter}")
+        if not value.is_number or not parameter.low <= value <= parameter.high:
+            raise RatfitError(f"--set {parameter}={value}: it must be a number in [{parameter.low}, {parameter.high}]")
+    there = problem_of(at_parameters(to_tables(problem), values)) if values else problem
+    return there.with_choice({n: v for n, v in settings.items() if n not in values})
 
 
 def _derived(problem: Problem, options: dict[str, Any]) -> Fit:

@@ -316,6 +316,13 @@ def test_gallery_card_as_a_problem_file(run, tmp_path):
             assert ours["expression"] == theirs["expression"]
 
 
+def test_a_parameter_can_be_set(run):
+    status, out, _ = run("derive", "eq19", "--set", "m=0.3", "--format", "json")
+    found = json.loads(out)
+    assert status == 0 and found["parameters"] == {} and "m" not in found["expression"].replace("Max", "")
+    assert run("derive", "eq19", "--set", "m=3")[0] == 2
+
+
 def test_init_writes_a_file_that_works_and_overwrites_none(run, tmp_path):
     path = tmp_path / "my.toml"
     assert run("init", str(path))[0] == 0

@@ -179,20 +179,49 @@ def test_answer(name):
     assert all(c.holds for c in fit.conditions)
 
 
-def test_an_exponential_of_a_fraction_is_found_to_forty_digits():
+def test_an_exponential_of_a_fraction_is_found_exactly():
     """exp((a + b*x)/(1 + c*x)) with f(0) = 1, f'(0) = 1, f(1) = 2: a = 0, b = 1, 1 + c = 1/log(2)."""
-    fit = fit_of(
-        *("x", "0 1", "exp((a+b*x)/(1+c*x))"),
-        unknowns="a,b,c",
-        value=["0;equals=1", "1;equals=2"],
-        derivative=["0;equals=1"],
-    )
+    words = {"unknowns": "a,b,c", "value": ["0;equals=1", "1;equals=2"], "derivative": ["0;equals=1"]}
+    fit = fit_of("x", "0 1", "exp((a+b*x)/(1+c*x))", **words)
+    assert same(fit.expression, "exp(x/(1 + (1/log(2) - 1)*x))") and not fit.candidates[0].certificate
+    through = {"unknowns": "a,b,c", "value": ["0;equals=1", "1/2;equals=3/2", "1;equals=2"]}
+    exact = fit_of("x", "0 1", "exp((a+b*x)/(1+c*x))", **through)
+    assert abs(exact(0.5) - 1.5) < 1e-12 and all(c.holds for c in exact.conditions)
+
+
+def test_an_exponential_of_a_parabola_is_found_to_forty_digits():
+    """exp(a + b*x + c*x**2) with total 1, mean 2/5 and second moment 1/5, by mpmath's quadrature."""
+    moments = ["equals=1", "weight=x;equals=2/5", "weight=x**2;equals=1/5"]
+    fit = fit_of("x", "0 1", "exp(a+b*x+c*x**2)", unknowns="a,b,c", integral=moments)
+    x = fit.problem.variable
     with mpmath.workdps(50):
-        true = mpmath.exp(mpmath.mpf("0.5") / (1 + (1 / mpmath.log(2) - 1) / 2))
-        found = sp.N(fit.expression.subs(fit.problem.variable, HALF), 48)
-        assert abs(true - mpmath.mpf(str(found))) < 1e-40
+        f = sp.lambdify(x, fit.expression, "mpmath")
+        for k, demand in enumerate(("1", "0.4", "0.2")):
+            found = mpmath.quad(lambda t, k=k: t**k * f(t), [0, 1])
+            assert abs(found - mpmath.mpf(demand)) < 1e-40
     assert "exactly one root" in fit.candidates[0].certificate
     assert all(c.holds and c.residual < 1e-40 for c in fit.conditions)
+
+
+ROOTS_AT_ZERO = {
+    "sqrt(x)": ("sqrt(x)", "0 1", "sqrt(a*x+b)", "sqrt(x)"),
+    "cosine": ("cos(x)", "0 pi/2", "sqrt(a*x+b)", "sqrt(1 - 2*x/pi)"),
+}
+
+
+@pytest.mark.parametrize("name", ROOTS_AT_ZERO)
+def test_a_root_that_vanishes_at_a_node(name):
+    target, on, form, expected = ROOTS_AT_ZERO[name]
+    fit = fit_of(target, on, form, unknowns="a,b", value=on.split())
+    assert same(fit.expression, expected)
+
+
+def test_interpolated_coefficients_are_held_to_their_range():
+    words = {"value": ["0;equals=1"], "integral": ["equals=1/2+m/10"], "parameter": ["m=1/10:2"]}
+    fit = fit_of("x", "0 1", "0/1", **words)
+    assert 0 < fit(0.5, m=1.0) < 1
+    with pytest.raises(rf.RatfitError, match="outside"):
+        fit(0.5, m=3.0)
 
 
 def test_coefficients_along_a_parameter_hold_at_the_nodes_of_the_table():

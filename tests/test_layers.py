@@ -17,7 +17,7 @@ LAYERS = [
     ("_parse",),
     ("_target", "_rational_integral", "_pieces", "_condition", "_form"),
     ("_problem", "_problem_file", "_problem_text", "_inline", "_generators", "_field", "_integral", "_series"),
-    ("_jets", "_system", "_rows", "_lower", "_kernel", "_ball"),
+    ("_inverse", "_jets", "_system", "_rows", "_lower", "_kernel", "_ball"),
     ("_solver",),
     ("_fit", "_poles", "_fraction"),
     ("_verify",),

@@ -10,7 +10,8 @@ from ratfit._deadline import TimeLimit
 from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Checked
 from ratfit._fraction import presentable
-from ratfit._generators import DIGITS
+from ratfit._generators import DIGITS, sampled
+from ratfit._inverse import inverse_of
 from ratfit._parse import RatfitError
 from ratfit._poles import multiprecise, polynomial_roots
 from ratfit._solver import Numbers, Solution, Table
@@ -168,7 +169,7 @@ def _check(
 ) -> Checked:
     """One condition, exactly and at 50 digits."""
     try:
-        exact = _all_zero([value - demand for value in found_exactly(system, condition, candidate)])
+        exact = _all_equal(found_exactly(system, condition, candidate), demand)
         residual = numerical_residual(system, condition, demand, expression)
     except Related:
         return Checked(condition, demand, None, None)
@@ -179,9 +180,20 @@ def _check(
     return Checked(condition, demand, holds, float(residual))
 
 
-def _all_zero(differences: list[sp.Expr]) -> bool | None:
-    found = [is_zero(difference) for difference in differences]
+def _all_equal(values: list[sp.Expr], demand: sp.Expr) -> bool | None:
+    found = [_equal(value, demand) for value in values]
     return False if False in found else None if None in found else True
+
+
+def _equal(value: sp.Expr, demand: sp.Expr) -> bool | None:
+    """Whether two numbers are the same; exp(a) = 2 by a = log(2), where the exponentials themselves are too much."""
+    equal = is_zero(value - demand)
+    if equal is True or not value.has(sp.exp, sp.log, sp.tanh, sp.Pow):
+        return equal
+    ways = [inverse_of(value, demand)]
+    if min(sampled(value)) > 0 and min(sampled(demand)) > 0:
+        ways.append(sp.expand_log(sp.log(value), force=True) - sp.log(demand))
+    return True if any(is_zero(way) for way in ways if way is not None) else equal
 
 
 def _size(demand: sp.Expr) -> mpmath.mpf:

@@ -73,7 +73,15 @@ def _formula_lines(fit: Fit, unicode: bool) -> list[str]:
     drawn = [f"    {line}" for line in formula_lines(rounded(fit.expression))] if unicode else []
     if any(len(line) > WIDTH for line in drawn):
         drawn = []  # a terminal would break the lines and leave no fraction to see
-    lines = ["", *drawn, *([""] if drawn else []), f"  fit         {fit.expression}"]
+    table = fit.candidates[0].table
+    text = str(fit.expression)
+    if table is not None:
+        names = ", ".join(u.name for u in table.unknowns)
+        lines = ["", f"  fit         {fit.problem.form.factor * table.numerator / table.denominator}"]
+        text = f"the same in numbers, {names} interpolated: --format json ({len(text)} characters)"
+        lines += [f"              {text}"]
+    else:
+        lines = ["", *drawn, *([""] if drawn else []), f"  fit         {text}"]
     if fit.candidates[0].certificate:
         lines += [f"  proof       {fit.candidates[0].certificate}"]
     if fit.problem.form.support is not None:
@@ -174,7 +182,8 @@ def problem_text(problem: Problem) -> str:
     lines += [f"parameter   {p} in [{p.low}, {p.high}]" for p in problem.parameters]
     lines += [f"form        {', '.join(f'{k} = {v}' for k, v in form_table(problem.form).items())}"]
     for condition in problem.conditions:
-        demand = "what the target does" if condition.equals is None else condition.equals
+        own = "what the target does" if condition.needs_target else 0
+        demand = own if condition.equals is None else condition.equals
         lines.append(f"condition   {describe(condition)} = {demand}")
     lines += [f"choice      {name} = {value}" for name, value in problem.choice.items()]
     lines += [f"reference   {r.name} = {r.expression}" for r in problem.references]

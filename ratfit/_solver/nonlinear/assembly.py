@@ -12,6 +12,7 @@ from ratfit._deadline import TimeLimit
 from ratfit._field import is_zero
 from ratfit._form import Shape
 from ratfit._integral import integral_parts
+from ratfit._inverse import inverted
 from ratfit._jets import same
 from ratfit._parse import RatfitError
 from ratfit._pieces import smooth_pieces
@@ -146,15 +147,14 @@ def _with_linear_unknowns_solved(assembly: Assembly) -> Assembly:
     """Unknowns that stand alone and linear in a residual are put in: exact, and no search for their size."""
     residuals = assembly.residuals
     for part in residuals.parts:
-        for unknown in residuals.unknowns if not part.moments else ():
-            slope = sp.diff(part.plain, unknown)
+        plain = sp.S.Zero if part.moments else sp.fraction(sp.together(inverted(part.plain, residuals.unknowns)))[0]
+        for unknown in residuals.unknowns:
+            slope = sp.diff(plain, unknown)
             if slope == 0 or slope.free_symbols & set(residuals.unknowns) or is_zero(slope) is not False:
                 continue
-            value = {unknown: sp.expand(-part.plain.subs(unknown, 0) / slope)}
+            value = {unknown: sp.cancel(-plain.subs(unknown, 0) / slope)}
             others = tuple(p.subs(value) for p in residuals.parts if p is not part)
             left = tuple(u for u in residuals.unknowns if u != unknown)
-            if not left:
-                return assembly
             return _with_linear_unknowns_solved(
                 replace(
                     assembly,

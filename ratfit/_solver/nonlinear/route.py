@@ -35,8 +35,8 @@ def solve_nonlinear(system: System, seed: int = 0) -> Iterator[Solution]:
             "drop one of them or raise a degree"
         )
     residuals = assembly.residuals
-    if residuals.homogeneous and len(residuals.unknowns) == 1:
-        only = {residuals.unknowns[0]: sp.S.One}
+    if not residuals.unknowns or (residuals.homogeneous and len(residuals.unknowns) == 1):
+        only = dict.fromkeys(residuals.unknowns, sp.S.One)
         yield Solution(assembly.numerator.subs(only), assembly.denominator.subs(only))
         return
     if parameters := _parameters(assembly):

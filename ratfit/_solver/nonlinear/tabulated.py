@@ -60,8 +60,22 @@ def _branches(assembly: Assembly, parameters: tuple[Parameter, ...], count: int 
         raise Undecided(str(error)) from None
     whole = [branch for branch in branches if not branch.failed.any()]
     if branches and not whole:
-        raise Undecided("no branch of solutions reaches over the whole ranges of the parameters; narrow them")
+        raise Undecided(
+            f"no branch of solutions reaches over the whole ranges of the parameters{_reach(parameters, branches)}; "
+            "narrow them"
+        )
     return whole
+
+
+def _reach(parameters: tuple[Parameter, ...], branches: list) -> str:
+    """How far the branch that reaches farthest does, in words."""
+    widest = max(branches, key=lambda branch: int((~branch.failed).sum()))
+    reached = widest.parameters[~widest.failed]
+    if not len(reached):
+        return ""
+    spans = zip(parameters, reached.min(0), reached.max(0), strict=True)
+    ranges = (f"{p.name} from {low:.3g} to {high:.3g}" for p, low, high in spans)
+    return f" (the longest was followed for {', '.join(ranges)})"
 
 
 def _short(value: float) -> sp.Rational:

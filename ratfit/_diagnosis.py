@@ -122,7 +122,7 @@ def advice(system: System, fit: Fit) -> tuple[str, ...]:
 
 
 def remarks(system: System, fit: Fit) -> tuple[str, ...]:
-    """What a person should know of any answer: conditions that the target itself does not keep, poles not looked for."""
+    """What a person should know of any answer: conditions that the target does not keep, poles not looked for."""
     found: list[str] = []
     with TimeLimit(ADVICE_SECONDS):
         if contrary := [describe(c) for c, d in system.pairs if _is_contrary(system, c, d)]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import mpmath
 import sympy as sp
@@ -65,7 +66,7 @@ def _by_numbers(curve: Curve, end: sp.Expr, side: int, order: int) -> Fact | Non
     if near is None or mid is None or far is None:
         return None
     if abs(near) > 1.05 * abs(mid) > 1.05 * abs(far):
-        return _infinite(curve, end, side, order, near > 0)
+        return _infinite(curve, end, side, order, near > 0) if _grows(number, place, side) else None
     off = abs(near - mid)
     if off > mpmath.mpf("1e-8") * (1 + abs(near)):
         return None
@@ -75,6 +76,15 @@ def _by_numbers(curve: Curve, end: sp.Expr, side: int, order: int) -> Fact | Non
     condition = None if curve.middle else condition_at(end, order, value)
     text = f"{MARKS[order]}({end}) = {shown(near)}{curve.label}"
     return Fact(KINDS[order], text, condition, f"numeric to {digits} digits", end, value)
+
+
+def _grows(number: Number, place: mpmath.mpf, side: int) -> bool:
+    """Whether a function grows on the whole way to a place with one sign: what oscillates there grows at some steps."""
+    with mpmath.workdps(FINE):
+        values = [number(place + side * mpmath.mpf(10) ** -(mpmath.mpf(k) * 27 / 10)) for k in range(3, 15)]
+    known = [value for value in values if value is not None]
+    one_sign = len(known) == len(values) and (all(v > 0 for v in known) or all(v < 0 for v in known))
+    return one_sign and all(abs(a) <= abs(b) for a, b in pairwise(known))
 
 
 def _vanishes(curve: Curve, values: dict[sp.Symbol, sp.Expr], side: int, order: int) -> bool:

@@ -12,7 +12,7 @@ from ratfit._condition import Derivative, Value
 from ratfit._poles import endpoint
 from ratfit._study.clock import Clock
 from ratfit._study.closed import shorter
-from ratfit._study.curve import FINE, SHOWN, Curve, agrees, decimal, exponent_of, growth, numbers_of, shown
+from ratfit._study.curve import FINE, SHOWN, Curve, Number, agrees, decimal, exponent_of, growth, numbers_of, shown
 from ratfit._study.fact import SYMBOLIC, Fact
 
 KINDS = ("value", "slope", "curvature")

@@ -27,7 +27,8 @@ class Root:
         """What is proved."""
         if self.radius is None:
             return f"not certified: {self.reason}"
-        return f"certified by balls: {self.reason}"
+        part = "in part " if "not proved" in self.reason else ""
+        return f"{part}certified by balls: {self.reason}"
 
 
 def certified_root(residuals: Residuals, start) -> Root | None:

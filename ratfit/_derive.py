@@ -30,7 +30,7 @@ AGREEMENT = sp.Float("1e-35")
 INTERPOLATED = sp.Float("1e-6")
 """The same for candidates that are interpolated."""
 
-POLYNOMIAL_SECONDS = 4.0
+POLYNOMIAL_SECONDS = 3.0
 """How long the polynomial route may take, and at most half of the time there is, before many starts are tried."""
 
 

@@ -15,13 +15,15 @@ from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivat
 from ratfit._deadline import TimeLimit
 from ratfit._field import is_zero, numerical_rank
 from ratfit._fit import Candidate, Fit
-from ratfit._generators import sampled
+from ratfit._generators import DIGITS
 from ratfit._jets import same
 from ratfit._parse import RatfitError
+from ratfit._poles import function_of, multiprecise
 from ratfit._problem import Problem
 from ratfit._rows import Row, rows, rows_of
 from ratfit._solver import Undecided, pick
 from ratfit._system import System, completed, equations, of_pairs
+from ratfit._target import sample_values
 
 CLASH_SECONDS = 10.0
 """How long the search for a smallest set of clashing conditions may take before it names all of them."""
@@ -140,11 +142,19 @@ def _is_contrary(system: System, condition: AbstractCondition, demand: sp.Expr) 
     target = system.problem.target
     if target is None or condition.equals is None or not isinstance(condition, AbstractPointCondition):
         return False
-    try:
-        own = target.derivative(condition.at, condition.order)
-        return any(abs(value) > mpmath.mpf("1e-9") for value in sampled(own - demand))
-    except RatfitError:
-        return False
+    low, high = system.problem.domain
+    side = 1 if same(condition.at, low) else -1 if same(condition.at, high) else 0
+    for values in sample_values(set(system.problem.parameters), ("1/7", "4/7")):
+        try:
+            with mpmath.workdps(DIGITS):
+                function = function_of(target.expression, target.variable, values)
+                at, asked = (multiprecise(e.xreplace(values)) for e in (condition.at, demand))
+                own = mpmath.diff(lambda t, f=function, a=at: f(a + t), 0, condition.order, direction=side)
+                if not mpmath.isfinite(own) or abs(own - asked) < mpmath.mpf("1e-6") * (1 + abs(asked)):
+                    return False
+        except (RatfitError, ZeroDivisionError, ValueError, TypeError):
+            return False
+    return True
 
 
 def _for_free(system: System) -> list[AbstractCondition]:

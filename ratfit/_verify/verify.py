@@ -27,6 +27,9 @@ from ratfit._verify.whole import broken
 TOLERANCE = mpmath.mpf("1e-30")
 """A residual at 50 digits below this, relative to the size of the demand, counts as zero."""
 
+CLEAR = mpmath.mpf("1e-8")
+"""A residual above this, relative to the size of the demand, is no matter of lost digits."""
+
 COMMON = mpmath.mpf("1e-25")
 """Zeros of numerator and denominator nearer than this are one, where coefficients are numbers of 60 digits."""
 
@@ -169,15 +172,17 @@ def _check(
 ) -> Checked:
     """One condition, exactly and at 50 digits."""
     try:
-        exact = _all_equal(found_exactly(system, condition, candidate), demand)
         residual = numerical_residual(system, condition, demand, expression)
+        size = 1 + _size(demand)
+        if residual > CLEAR * size:
+            return Checked(condition, demand, False, float(residual))  # no algebra makes that zero
+        exact = _all_equal(found_exactly(system, condition, candidate), demand)
     except Related:
         return Checked(condition, demand, None, None)
     except RatfitError:
         return Checked(condition, demand, False, None)
-    numerically = residual < TOLERANCE * (1 + _size(demand))
-    holds = exact if exact == numerically else None
-    return Checked(condition, demand, holds, float(residual))
+    numerically = residual < TOLERANCE * size
+    return Checked(condition, demand, exact if exact == numerically else None, float(residual))
 
 
 def _all_equal(values: list[sp.Expr], demand: sp.Expr) -> bool | None:

@@ -17,8 +17,8 @@ from ratfit._field import is_zero, numerical_rank
 from ratfit._fit import Candidate, Fit
 from ratfit._generators import DIGITS
 from ratfit._jets import same
+from ratfit._multiprecise import function_of, multiprecise
 from ratfit._parse import RatfitError
-from ratfit._poles import function_of, multiprecise
 from ratfit._problem import Problem
 from ratfit._rows import Row, rows, rows_of
 from ratfit._solver import Undecided, pick

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 
 import mpmath
 import sympy as sp
 
 from ratfit._generators import DIGITS
-from ratfit._parse import RatfitError
+from ratfit._multiprecise import endpoint, function_of, multiprecise
 from ratfit._target import sample_values
 
 SCAN = 2001
@@ -17,9 +17,6 @@ SCAN = 2001
 
 SETTINGS, PLACES = 61, 32
 """Values of each parameter, and places on the support, of the scan for changes of sign."""
-
-ROOT_DIGITS = 400
-"""Digits of an algebraic number without radicals: enough for numerical derivatives at 50 digits up to order 6."""
 
 NEAR = mpmath.mpf("1e-15")
 """How far from the real axis, or from an end of the interval, a computed root may lie and still count as on it."""
@@ -43,11 +40,6 @@ def poles(
             ends = [endpoint(end.xreplace(values)) for end in support]
             found += [(root, values) for root in _real_zeros(denominator.xreplace(values), x, ends)]
     return found
-
-
-def endpoint(end: sp.Expr) -> mpmath.mpf:
-    """An end of a range, infinite ones too, at mpmath's working precision."""
-    return mpmath.mpf("inf" if end > 0 else "-inf") if end.is_infinite else multiprecise(end)
 
 
 def _suspects(denominator: sp.Expr, x: sp.Symbol, support: tuple[sp.Expr, sp.Expr]) -> list[dict[sp.Symbol, sp.Expr]]:
@@ -119,28 +111,3 @@ def _scanned_roots(base: sp.Expr, x: sp.Symbol, ends: Sequence[mpmath.mpf]) -> l
         if mpmath.sign(values[i]) * mpmath.sign(values[i + 1]) < 0:
             found.append(mpmath.findroot(function, (points[i], points[i + 1]), solver="anderson"))
     return [mpmath.mpc(f) for f in found]
-
-
-def function_of(
-    expression: sp.Expr, x: sp.Symbol, values: Mapping[sp.Symbol, sp.Expr]
-) -> Callable[[mpmath.mpf], mpmath.mpf]:
-    """The expression at these values of its other symbols, as a function of x at mpmath's working precision."""
-    symbols = sorted(expression.free_symbols - {x}, key=lambda s: s.name)
-    function = _compiled(expression, (x, *symbols))
-    return lambda place: function(place, *(multiprecise(values[s]) for s in symbols))
-
-
-@lru_cache(maxsize=100)
-def _compiled(expression: sp.Expr, symbols: tuple[sp.Symbol, ...]) -> Callable[..., mpmath.mpf]:
-    numbers = {root: root.evalf(ROOT_DIGITS) for root in expression.atoms(sp.CRootOf)}
-    return sp.lambdify(symbols, expression.xreplace(numbers), "mpmath", cse=False)
-
-
-def multiprecise(number: sp.Expr) -> mpmath.mpf:
-    """A constant at the working precision of mpmath; RatfitError for one that is not real."""
-    if number.is_Rational:
-        return mpmath.mpf(int(number.p)) / int(number.q)
-    value = sp.N(number, mpmath.mp.dps + 10, maxn=2 * mpmath.mp.dps + 20)
-    if value.is_real is not True:
-        raise RatfitError(f"{number} is not a real number")
-    return mpmath.mpf(sp.Float(value, mpmath.mp.dps + 10)._mpf_)

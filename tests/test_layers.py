@@ -15,6 +15,7 @@ ROOT = Path(ratfit.__file__).parent
 LAYERS = [
     ("_deadline",),
     ("_parse",),
+    ("_multiprecise",),
     ("_target", "_rational_integral", "_pieces", "_condition", "_form"),
     ("_problem", "_problem_file", "_problem_text", "_inline", "_generators", "_field", "_integral", "_series"),
     ("_inverse", "_jets", "_system", "_rows", "_lower", "_kernel", "_ball"),

@@ -9,8 +9,8 @@ import sympy as sp
 
 from ratfit._field import is_zero
 from ratfit._generators import sampled
+from ratfit._multiprecise import multiprecise
 from ratfit._parse import RatfitError, parse_expression
-from ratfit._poles import multiprecise
 from ratfit._study.clock import Clock
 from ratfit._study.crossings import kinked_arguments
 from ratfit._study.curve import DIGITS, Curve
@@ -70,7 +70,7 @@ def _fraction(number: mpmath.mpf) -> sp.Rational | None:
     if not mpmath.mpf(10) ** -8 < abs(number) < 10**8:
         return None
     best = sp.Rational(str(number)).limit_denominator(LARGEST)
-    return best if abs(number - mpmath.mpf(int(best.p)) / int(best.q)) < SLACK * (1 + abs(number)) else None
+    return best if abs(number - multiprecise(best)) < SLACK * (1 + abs(number)) else None
 
 
 def _quadratic(number: mpmath.mpf) -> Iterator[sp.Expr]:

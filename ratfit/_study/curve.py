@@ -11,8 +11,8 @@ from typing import Any
 import mpmath
 import sympy as sp
 
+from ratfit._multiprecise import endpoint, multiprecise
 from ratfit._parse import RatfitError
-from ratfit._poles import endpoint, multiprecise
 from ratfit._target import Target, at_values, sample_values
 
 DIGITS = 50

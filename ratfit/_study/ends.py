@@ -9,7 +9,7 @@ import mpmath
 import sympy as sp
 
 from ratfit._condition import Derivative, Value
-from ratfit._poles import endpoint
+from ratfit._multiprecise import endpoint
 from ratfit._study.clock import Clock
 from ratfit._study.closed import shorter
 from ratfit._study.curve import FINE, SHOWN, Curve, Number, agrees, decimal, exponent_of, growth, numbers_of, shown

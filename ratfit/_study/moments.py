@@ -8,7 +8,7 @@ import mpmath
 import sympy as sp
 
 from ratfit._condition import Integral
-from ratfit._poles import multiprecise
+from ratfit._multiprecise import multiprecise
 from ratfit._study.closed import shorter
 from ratfit._study.crossings import Scans
 from ratfit._study.curve import SHOWN, Curve, Number, decimal, growth, numbers_of, shown

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import mpmath
 import sympy as sp
 
+from ratfit._multiprecise import multiprecise
 from ratfit._study.clock import Clock
 from ratfit._study.closed import shorter
 from ratfit._study.curve import DIGITS, SHOWN, Curve, numbers_of
@@ -65,7 +66,7 @@ def _seen(curve: Curve, difference: sp.Expr) -> bool:
     for values in curve.samples():
         number = numbers_of(difference.xreplace(values), _DISTANCE)
         with mpmath.workdps(DIGITS):
-            found = [number(reach * mpmath.mpf(int(p.p)) / int(p.q)) for p in map(sp.Rational, PLACES)]
+            found = [number(reach * multiprecise(p)) for p in map(sp.Rational, PLACES)]
         if any(value is None or abs(value) > mpmath.mpf("1e-40") for value in found):
             return False
     return True

@@ -10,9 +10,9 @@ import sympy as sp
 from ratfit._condition import JET, AbstractCondition, AbstractPointCondition, Equation, Integral, Limit
 from ratfit._generators import DIGITS
 from ratfit._integral import integral_parts
+from ratfit._multiprecise import endpoint, function_of, midpoint, multiprecise
 from ratfit._parse import RatfitError
 from ratfit._pieces import smooth_pieces
-from ratfit._poles import endpoint, function_of, multiprecise
 from ratfit._rows import sides_of
 from ratfit._solver.nonlinear.residuals import Moment
 from ratfit._system import System
@@ -84,8 +84,7 @@ def _integral(integrand: sp.Expr, x: sp.Symbol, over: tuple[sp.Expr, sp.Expr]) -
         with flint.ctx.workdps(DIGITS + BALL_DIGITS):
             ball = ball_integral(Moment(integrand, *over), x, ())([])
             if ball.is_finite() and ball.rad() < flint.arb(10) ** -DIGITS * (1 + abs(ball.mid())):
-                mantissa, exponent = ball.mid().man_exp()
-                return mpmath.ldexp(mpmath.mpf(int(mantissa)), int(exponent))
+                return midpoint(ball)
     except RatfitError:
         pass
     return mpmath.quad(function_of(integrand, x, {}), [endpoint(end) for end in over])

@@ -12,8 +12,9 @@ from ratfit._fit import Candidate, Checked
 from ratfit._fraction import presentable
 from ratfit._generators import DIGITS, sampled
 from ratfit._inverse import inverse_of
+from ratfit._multiprecise import multiprecise
 from ratfit._parse import RatfitError
-from ratfit._poles import multiprecise, polynomial_roots
+from ratfit._poles import polynomial_roots
 from ratfit._solver import Numbers, Solution, Table
 from ratfit._system import System
 from ratfit._target import sample_values

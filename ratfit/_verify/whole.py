@@ -9,8 +9,9 @@ import sympy as sp
 
 from ratfit._condition import Limit
 from ratfit._generators import DIGITS
+from ratfit._multiprecise import endpoint, function_of, multiprecise
 from ratfit._parse import RatfitError
-from ratfit._poles import endpoint, function_of, multiprecise, poles
+from ratfit._poles import poles
 from ratfit._system import System
 from ratfit._target import at_values, sample_values
 from ratfit._verify.candidate import Reduced

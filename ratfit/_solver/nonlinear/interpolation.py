@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import mpmath
 import sympy as sp
 
+from ratfit._multiprecise import multiprecise
 from ratfit._target import Parameter
 
 DIGITS = 70
@@ -51,7 +52,7 @@ def interpolant(
     with mpmath.workdps(DIGITS):
         axes = [list(dict.fromkeys(node[k] for node in nodes)) for k in range(len(parameters))]
         scaled = [[_scaled(p, value) for value in axis] for p, axis in zip(parameters, axes, strict=True)]
-        grid: dict[Powers, list[mpmath.mpf]] = {(): [mpmath.mpf(int(v.p)) / int(v.q) for v in values]}
+        grid: dict[Powers, list[mpmath.mpf]] = {(): [multiprecise(v) for v in values]}
         for places in scaled:
             # One axis after the other: rows along it become coefficients, a list for each power.
             block = len(next(iter(grid.values()))) // len(places)
@@ -74,8 +75,7 @@ def interpolant(
 
 
 def _scaled(parameter: Parameter, value: sp.Rational) -> mpmath.mpf:
-    scaled = sp.N((2 * value - parameter.low - parameter.high) / (parameter.high - parameter.low), DIGITS)
-    return mpmath.mpf(sp.Float(scaled, DIGITS)._mpf_)
+    return multiprecise((2 * value - parameter.low - parameter.high) / (parameter.high - parameter.low))
 
 
 def _newton(places: Sequence[mpmath.mpf], values: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:

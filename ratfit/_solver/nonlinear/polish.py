@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
@@ -12,6 +11,7 @@ import mpmath
 import sympy as sp
 from flint import arb, arb_mat
 
+from ratfit._multiprecise import compiled, midpoint
 from ratfit._parse import RatfitError
 from ratfit._solver.nonlinear.enclosure import Enclosure, bits, enclosure
 from ratfit._solver.nonlinear.residuals import Moment, Residual, Residuals
@@ -25,7 +25,6 @@ GUARD_DIGITS = 20
 FIRST_DIGITS = 36  # a Newton step from a float's 16 digits gives about 32
 STEPS = 16
 _SLOPE_DIGITS = 35
-ROOT_DIGITS = 120  # of algebraic numbers without radicals, where mpmath evaluates
 _WORTHWHILE = 9.0  # digits that a step must add for the slopes of an earlier one to stay
 
 
@@ -183,23 +182,17 @@ def _multiprecise(residuals: Residuals) -> Callable[[Sequence[mpmath.mpf]], _Val
 
 
 def _terms(part: Residual, residuals: Residuals) -> list[Callable[[Sequence[mpmath.mpf]], mpmath.mpf]]:
-    plain = [_lambdified(term, residuals.unknowns) for term in sp.Add.make_args(part.plain)]
+    plain = [compiled(term, residuals.unknowns) for term in sp.Add.make_args(part.plain)]
     return [
         *(lambda values, f=function: f(*values) for function in plain),
         *(_quadrature(moment, residuals) for moment in part.moments),
     ]
 
 
-@functools.lru_cache(maxsize=100)
-def _lambdified(expression: sp.Expr, symbols: tuple[sp.Symbol, ...]) -> Callable[..., mpmath.mpf]:
-    numbers = {root: root.evalf(ROOT_DIGITS) for root in expression.atoms(sp.CRootOf)}
-    return sp.lambdify(symbols, expression.xreplace(numbers), "mpmath", cse=False)
-
-
 def _quadrature(moment: Moment, residuals: Residuals) -> Callable[[Sequence[mpmath.mpf]], mpmath.mpf]:
     """By mpmath, whose error estimate is taken at its word; ValueError where it admits too large a one."""
-    function = _lambdified(moment.integrand, (residuals.variable, *residuals.unknowns))
-    ends = [_lambdified(end, ()) for end in (moment.low, moment.high)]
+    function = compiled(moment.integrand, (residuals.variable, *residuals.unknowns))
+    ends = [compiled(end, ()) for end in (moment.low, moment.high)]
 
     def value(values: Sequence[mpmath.mpf]) -> mpmath.mpf:
         interval = [mpmath.mpf(end()) for end in ends]
@@ -217,6 +210,5 @@ def _to_arb(value: mpmath.mpf) -> arb:
 
 
 def _to_mpf(value: arb, digits: int) -> mpmath.mpf:
-    mantissa, exponent = value.man_exp()
     with mpmath.workdps(digits):
-        return mpmath.ldexp(mpmath.mpf(int(mantissa)), int(exponent))
+        return midpoint(value)

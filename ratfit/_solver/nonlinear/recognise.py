@@ -11,6 +11,8 @@ import mpmath
 import sympy as sp
 from flint import arb
 
+from ratfit._multiprecise import midpoint
+
 Number: TypeAlias = arb | mpmath.mpf | sp.Float | str
 
 MARGIN = 4
@@ -53,8 +55,7 @@ def recognised(values: Sequence[Number], constants: Sequence[sp.Expr], digits: i
 
 def _multiprecise(value: Number) -> mpmath.mpf:
     if isinstance(value, arb):
-        mantissa, exponent = value.mid().man_exp()
-        return mpmath.ldexp(mpmath.mpf(int(mantissa)), int(exponent))
+        return midpoint(value)
     return mpmath.mpf(sp.Float(value, mpmath.mp.dps)._mpf_) if isinstance(value, sp.Float) else mpmath.mpf(value)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import mpmath
 import sympy as sp
 
+from ratfit._multiprecise import multiprecise
 from ratfit._solver.nonlinear.recognise import recognised
 
 DEGREE = 4
@@ -29,8 +30,7 @@ def recognised_function(
     """
     positive = all(place > 0 for place in places)
     with mpmath.workdps(DIGITS + 20):
-        known = [mpmath.mpf(int(v.p)) / int(v.q) for v in values]
-        at = [mpmath.mpf(int(p.p)) / int(p.q) for p in places]
+        known, at = ([multiprecise(number) for number in numbers] for numbers in (values, places))
         for argument, points in ((parameter, at), *([(sp.sqrt(parameter), list(map(mpmath.sqrt, at)))] * positive)):
             for total in range(2 * DEGREE + 1):
                 for below in range(total + 1):

@@ -87,11 +87,11 @@ def _derived(problem: Problem, route: str, known: _Known, timeout: float | None,
     try:
         _collect(system, taken, known, seconds, seed)
     except (Undecided, RatfitError) as error:  # Related is a RatfitError too
-        reasons = (str(error), *(_tried_by_starts(system, known, seed) if alternative else [""]))
-        if reasons[1:]:
-            if isinstance(error, RatfitError) and not isinstance(error, Related):
-                raise
-            return Fit(problem, "rejected", taken, reasons=tuple(filter(None, reasons)))
+        why_not = _tried_by_starts(system, known, seed) if alternative else "there is no other route"
+        if why_not and isinstance(error, RatfitError) and not isinstance(error, Related):
+            raise
+        if why_not:
+            return Fit(problem, "rejected", taken, reasons=(str(error), *([why_not] if alternative else [])))
         taken = known.route
     fit = _assembled(problem, taken, _distinct(known.candidates), _shown_equations(system, taken))
     if not fit.candidates:
@@ -101,15 +101,15 @@ def _derived(problem: Problem, route: str, known: _Known, timeout: float | None,
     return replace(fit, advice=(*linear, *remarks(system, fit)))
 
 
-def _tried_by_starts(system: System, known: _Known, seed: int) -> list[str]:
+def _tried_by_starts(system: System, known: _Known, seed: int) -> str:
     """Nothing where the nonlinear route finds what the polynomial one could not, else why it does not."""
     known.route = known.words["route"] = "nonlinear"
     try:
         _collect(system, "nonlinear", known, None, seed)
     except (Undecided, RatfitError) as error:
-        return [f"nonlinear route: {error}"]
+        return f"nonlinear route: {error}"
     found = any(not candidate.reason for candidate in known.candidates)
-    return [] if found else ["nonlinear route: many starts found nothing either, which proves nothing"]
+    return "" if found else "nonlinear route: many starts found nothing either, which proves nothing"
 
 
 def _collect(system: System, route: str, known: _Known, seconds: float | None, seed: int) -> None:

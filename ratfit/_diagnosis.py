@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import combinations
 
-import mpmath
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
@@ -15,18 +14,20 @@ from ratfit._condition import AbstractCondition, AbstractPointCondition, Derivat
 from ratfit._deadline import TimeLimit
 from ratfit._field import is_zero, numerical_rank
 from ratfit._fit import Candidate, Fit
-from ratfit._generators import DIGITS
 from ratfit._jets import same
-from ratfit._multiprecise import function_of, multiprecise
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
 from ratfit._rows import Row, rows, rows_of
 from ratfit._solver import Undecided, pick
 from ratfit._system import System, completed, equations, of_pairs
 from ratfit._target import sample_values
+from ratfit._verify import numerical_residual
 
 CLASH_SECONDS = 10.0
 """How long the search for a smallest set of clashing conditions may take before it names all of them."""
+
+CONTRARY = 1e-6
+"""A stated number is another than the target's where they differ by more, relative to its size."""
 
 ADVICE_SECONDS = 3.0
 """How long the search for advice on an answer may take."""
@@ -142,19 +143,13 @@ def _is_contrary(system: System, condition: AbstractCondition, demand: sp.Expr) 
     target = system.problem.target
     if target is None or condition.equals is None or not isinstance(condition, AbstractPointCondition):
         return False
-    low, high = system.problem.domain
-    side = 1 if same(condition.at, low) else -1 if same(condition.at, high) else 0
-    for values in sample_values(set(system.problem.parameters), ("1/7", "4/7")):
-        try:
-            with mpmath.workdps(DIGITS):
-                function = function_of(target.expression, target.variable, values)
-                at, asked = (multiprecise(e.xreplace(values)) for e in (condition.at, demand))
-                own = mpmath.diff(lambda t, f=function, a=at: f(a + t), 0, condition.order, direction=side)
-                if not mpmath.isfinite(own) or abs(own - asked) < mpmath.mpf("1e-6") * (1 + abs(asked)):
-                    return False
-        except (RatfitError, ZeroDivisionError, ValueError, TypeError):
-            return False
-    return True
+    places = sample_values(set(system.problem.parameters), ("1/7", "4/7"))
+    try:
+        found = [numerical_residual(system, condition, demand, target.expression, [place]) for place in places]
+    except (RatfitError, ValueError, TypeError):
+        return False  # no number to hold against it
+    sizes = [abs(float(demand.xreplace(place))) for place in places]
+    return all(residual >= CONTRARY * (1 + size) for residual, size in zip(found, sizes, strict=True))
 
 
 def _for_free(system: System) -> list[AbstractCondition]:

@@ -136,7 +136,7 @@ class Rational(AbstractForm):
         """The fraction with its unknown coefficients, named a0, a1, ... and b0, b1, ... unless such names are taken."""
         above, below = self.exponents()
         y = self.inner(variable)
-        a, b = (_letters(letter, taken) for letter in ("a", "b"))
+        a, b = (letters_of(letter, taken) for letter in ("a", "b"))
         unknowns_above = tuple(sp.Symbol(f"{a}{e}", real=True) for e in above)
         unknowns_below = tuple(sp.Symbol(f"{b}{e}", real=True) for e in below)
         return Shape(
@@ -213,13 +213,13 @@ class Power(AbstractForm):
             raise RatfitError(
                 f"form: the power's base must be of degree 1 in {variable}, as in 1 - {variable}, not {base}"
             )
-        names = [_letters(letter, taken) for letter in self.letters]
+        names = [letters_of(letter, taken) for letter in self.letters]
         a, b = (sp.Symbol(name, real=True) for name in names)
         n = sp.Symbol(self.exponent, real=True)
         return Shape(a + b * base**n, sp.S.One, self.factor, (a, b, n), homogeneous=False, power=(base, n))
 
 
-def _letters(letter: str, taken: Iterable[str]) -> str:
+def letters_of(letter: str, taken: Iterable[str]) -> str:
     """The letter, doubled until no name of the problem begins with it: an unknown must not shadow a parameter."""
     while any(name.startswith(letter) for name in taken):
         letter += letter[0]

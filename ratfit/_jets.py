@@ -10,6 +10,7 @@ import sympy as sp
 
 from ratfit._condition import JET, AbstractPointCondition, Derivative, Equation
 from ratfit._field import is_zero
+from ratfit._form import letters_of
 from ratfit._generators import sampled
 
 TINY = 1e-40
@@ -68,7 +69,7 @@ def completion(
     below it (a polynomial's), `vanishes` which are zero by parity. A residual whose highest derivative is linear gives
     that derivative; what it cannot give becomes a symbol, and the residual an equation that is left over.
     """
-    letter = next(letter for letter in ("s", "ss", "sss", "slope") if not any(n.startswith(letter) for n in taken))
+    letter = letters_of("s", taken)
     symbols: list[sp.Symbol] = []
 
     def open_(jet: Jet, order: int) -> None:

@@ -258,7 +258,7 @@ def _numpy_operations(dtype: Any) -> Operations:
 
     operations = {name: getattr(np, name) for name in _NAMED_ALIKE}
     operations |= {name: getattr(scipy.special, name) for name in _SPECIAL}
-    operations |= {"select": select, "integer_power": _repeated_product, "cbrt": _principal(np.cbrt, select)}
+    operations |= {"select": select, "integer_power": repeated_product, "cbrt": _principal(np.cbrt, select)}
     return {name: _unboxed(operation) for name, operation in operations.items()}
 
 
@@ -272,7 +272,7 @@ def _unboxed(operation: Callable[..., Any]) -> Callable[..., Any]:
     return unboxed
 
 
-def _repeated_product(base: Any, exponent: int) -> Any:
+def repeated_product(base: Any, exponent: int) -> Any:
     """A positive integer power in the least squarings: `numpy.power` takes ten times as long and rounds otherwise."""
     power = None
     while exponent:

@@ -177,11 +177,10 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     ratfit derive "t**n" --parameter n=1:1000 --on 0 1 --form 1/1 --value 0 --value 1 --derivative 1
     """
     found, shown = _read(problem, degree, options)
-    stated = found
-    found = _with_settings(found, settings_of(settings))
-    if found.parameters != stated.parameters:
+    there = _with_settings(found, settings_of(settings))
+    if there.parameters != found.parameters:
         shown = None  # what is published has the parameters as symbols
-    fit = _derived(found, options)
+    fit = _derived(there, options)
     if options["unique"] and fit.status in ("family", "several"):
         fit = _refused(fit)
     _write(_rendered(fit, shown, options["format_"]), options["out"])
@@ -192,9 +191,10 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
 
 def _with_settings(problem: Problem, settings: dict[str, str]) -> Problem:
     """The problem with choices recorded, and at the values of parameters that are set."""
-    values = {p.name: settings[p.name] for p in problem.parameters if p.name in settings}
-    for parameter in problem.parameters:
-        value = exact(values.get(parameter.name, parameter.low), f"--set {parameter}")
+    values = {}
+    for parameter in (p for p in problem.parameters if p.name in settings):
+        values[parameter.name] = settings[parameter.name]
+        value = exact(settings[parameter.name], f"--set {parameter}")
         if not value.is_number or not parameter.low <= value <= parameter.high:
             raise RatfitError(f"--set {parameter}={value}: it must be a number in [{parameter.low}, {parameter.high}]")
     there = problem_of(at_parameters(to_tables(problem), values)) if values else problem

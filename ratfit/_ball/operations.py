@@ -9,6 +9,8 @@ from typing import Any
 import sympy as sp
 from flint import acb, arb
 
+from ratfit._lower import repeated_product
+
 Operation = Callable[..., Any]
 
 UNDEFINED = acb(arb.nan(), arb.nan())
@@ -81,14 +83,4 @@ def root(degree: int) -> Operation:
 
 def integer_power(exponent: int) -> Operation:
     """A positive power by squarings: flint's own gives no ball where the base contains 0."""
-
-    def apply(base: Any) -> Any:
-        result, left = None, exponent
-        while left:
-            if left % 2:
-                result = base if result is None else result * base
-            left //= 2
-            base = base * base if left else base
-        return result
-
-    return apply
+    return lambda base: repeated_product(base, exponent)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import sympy as sp
 
 from ratfit._condition import Limit
@@ -77,11 +79,17 @@ def fractions(system: System, vectors: list[list[sp.Expr]]) -> list[Solution]:
         vectors = _with_one_at(scale, pivot, vectors)
     names = [system.shape.unknowns[c].name for i, c in enumerate(frees) if i != pivot]
     free = [sp.Symbol(name, real=True) for name in names]
-    weights = [sp.S.One, *free]
+    return [Solution(*combination(pairs, [sp.S.One, *free], vectors), dict.fromkeys(free, (-sp.oo, sp.oo)))]
+
+
+def combination(
+    pairs: Sequence[tuple[sp.Expr, sp.Expr]], weights: Sequence[sp.Expr], vectors: Sequence[Sequence[sp.Expr]]
+) -> tuple[sp.Expr, sp.Expr]:
+    """Numerator and denominator of a form's columns with the weighted sum of vectors for coefficients."""
     combined = [sp.Add(*(w * v[i] for w, v in zip(weights, vectors, strict=True))) for i in range(len(pairs))]
     above = sp.Add(*(c * n for c, (n, _) in zip(combined, pairs, strict=True)))
     below = sp.Add(*(c * d for c, (_, d) in zip(combined, pairs, strict=True)))
-    return [Solution(above, below, dict.fromkeys(free, (-sp.oo, sp.oo)))]
+    return above, below
 
 
 def _scale_column(system: System, vectors: list[list[sp.Expr]]) -> int:

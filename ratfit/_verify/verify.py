@@ -56,15 +56,12 @@ def verify(system: System, solution: Solution) -> Candidate:
         return Candidate(sp.nan, reason="the denominator vanishes identically")
     if solution.numbers is not None:
         return _verified_numbers(system, candidate, solution.numbers)
-    expression = presentable(candidate.factor, candidate.numerator, candidate.denominator, x, _middle(system))
+    expression = _presented(system, candidate)
     free = {s: r for s, r in solution.free.items() if _depends(expression, s)}
     idle = {s: sp.S.One for s in solution.free if s in expression.free_symbols and s not in free}
     if idle:
         return verify(system, Solution(solution.numerator.subs(idle), solution.denominator.subs(idle), free))
-    checked = tuple(
-        _check(system, condition, demand, candidate, expression)
-        for condition, demand in zip(system.conditions, system.demands, strict=True)
-    )
+    checked = tuple(_check(system, condition, demand, candidate, expression) for condition, demand in system.pairs)
     reason = _failure(checked, candidate.common) or ("" if free else broken(system, candidate))
     if roots := expression.atoms(sp.CRootOf):
         words = f"exact: {len(roots)} algebraic number(s) without radicals, shown to {SHOWN} digits"
@@ -79,7 +76,8 @@ def _verified_numbers(system: System, candidate: Reduced, numbers: Numbers) -> C
     """
     looks = ""
     if numbers.guess is not None:
-        looks = f"; looks like {_plain(system, numbers.guess)} (numerical, not proved)"
+        looked = without_common_factors(system.shape.factor, numbers.guess, system.problem.variable)
+        looks = f"; looks like {_presented(system, looked)} (numerical, not proved)"
         with TimeLimit(GUESS_SECONDS):
             guessed = verify(system, numbers.guess)
             if not guessed.reason:
@@ -127,8 +125,7 @@ def _common_root(candidate: Reduced, x: sp.Symbol) -> str:
     return f"{x} = {mpmath.nstr(near[0].real if abs(near[0].imag) < COMMON else near[0], 8)}" if near else ""
 
 
-def _plain(system: System, guess: Solution) -> sp.Expr:
-    candidate = without_common_factors(system.shape.factor, guess, system.problem.variable)
+def _presented(system: System, candidate: Reduced) -> sp.Expr:
     parts = candidate.factor, candidate.numerator, candidate.denominator
     return presentable(*parts, system.problem.variable, _middle(system))
 

@@ -10,7 +10,7 @@ import sympy as sp
 from ratfit._condition import AbstractCondition, AbstractPointCondition, Equation, Integral, Limit, describe
 from ratfit._deadline import TimeLimit
 from ratfit._field import is_zero
-from ratfit._form import Shape
+from ratfit._form import Shape, letters_of
 from ratfit._integral import integral_parts
 from ratfit._inverse import inverted
 from ratfit._jets import same
@@ -18,7 +18,7 @@ from ratfit._parse import RatfitError
 from ratfit._pieces import smooth_pieces
 from ratfit._rows import rows, sides_of
 from ratfit._series import LOCAL, local_coordinate
-from ratfit._solver.linear import fractions, null_space
+from ratfit._solver.linear import combination, fractions, null_space
 from ratfit._solver.nonlinear.residuals import Moment, Residual, Residuals
 from ratfit._solver.solution import Undecided
 from ratfit._system import Demanded, System, columns, completed, of_pairs, residuals
@@ -49,17 +49,14 @@ def assembled(system: System) -> Assembly | None:
     if not system.fraction:
         return _with_linear_unknowns_solved(_assembly(system, system.shape, system.pairs))
     linear, rest = split(system)
-    if any(not e.free_symbols & set(system.completion.symbols) and is_zero(e) is False for e in _left(system)):
+    leftover, symbols = system.completion.leftover, set(system.completion.symbols)
+    if any(not e.free_symbols & symbols and is_zero(e) is False for e in leftover):
         return None
     vectors = null_space(linear)
     if not vectors:
         return None
     shape = _in_basis(system, vectors)
     return None if shape is None else _assembly(system, shape, rest)
-
-
-def _left(system: System) -> tuple[sp.Expr, ...]:
-    return system.completion.leftover
 
 
 def split(system: System) -> tuple[System, list[Demanded]]:
@@ -105,17 +102,9 @@ def _in_basis(system: System, vectors: list[list[sp.Expr]]) -> Shape | None:
             return None
         found = solutions[0]
         return Shape(found.numerator, found.denominator, system.shape.factor, tuple(found.free), homogeneous=False)
-    unknowns = tuple(sp.Symbol(f"c{i}", real=True) for i in range(len(vectors)))
-    unknowns = unknowns if not _clashes(system, unknowns) else tuple(sp.Dummy(u.name, real=True) for u in unknowns)
-    combined = [sp.Add(*(u * v[k] for u, v in zip(unknowns, vectors, strict=True))) for k in range(len(pairs))]
-    above = sp.Add(*(c * n for c, (n, _) in zip(combined, pairs, strict=True)))
-    below = sp.Add(*(c * d for c, (_, d) in zip(combined, pairs, strict=True)))
-    return Shape(above, below, system.shape.factor, unknowns, homogeneous=True)
-
-
-def _clashes(system: System, unknowns: tuple[sp.Symbol, ...]) -> bool:
-    taken = {system.problem.variable.name, *(p.name for p in system.problem.parameters)}
-    return any(u.name in taken for u in unknowns)
+    letter = letters_of("c", [system.problem.variable.name, *(p.name for p in system.problem.parameters)])
+    unknowns = tuple(sp.Symbol(f"{letter}{i}", real=True) for i in range(len(vectors)))
+    return Shape(*combination(pairs, unknowns, vectors), system.shape.factor, unknowns, homogeneous=True)
 
 
 def _assembly(system: System, shape: Shape, rest: list[Demanded]) -> Assembly:

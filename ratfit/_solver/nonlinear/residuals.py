@@ -52,6 +52,12 @@ class Residuals:
     parts: tuple[Residual, ...]
     homogeneous: bool = False
 
+    @property
+    def expressions(self) -> list[sp.Expr]:
+        """Every expression in the residuals: plain ones, integrands, and ends of ranges."""
+        moments = [m for part in self.parts for m in part.moments]
+        return [*(p.plain for p in self.parts), *(e for m in moments for e in (m.integrand, m.low, m.high))]
+
     def at(self, values: Mapping[sp.Symbol, sp.Expr]) -> Residuals:
         """The residuals at exact values of the parameters."""
         return Residuals(

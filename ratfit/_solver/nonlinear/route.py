@@ -49,13 +49,9 @@ def solve_nonlinear(system: System, seed: int = 0) -> Iterator[Solution]:
 
 def _parameters(assembly: Assembly) -> list[sp.Symbol]:
     residuals = assembly.residuals
-    parts = [e for part in residuals.parts for e in (part.plain, *(x for m in part.moments for x in _ends(m)))]
-    symbols = set().union(*(e.free_symbols for e in (*parts, assembly.numerator, assembly.denominator)))
+    everything = (*residuals.expressions, assembly.numerator, assembly.denominator)
+    symbols = set[sp.Symbol]().union(*(e.free_symbols for e in everything))
     return sorted(symbols - set(residuals.unknowns) - {residuals.variable}, key=lambda s: s.name)
-
-
-def _ends(moment) -> tuple[sp.Expr, ...]:
-    return moment.integrand, moment.low, moment.high
 
 
 def _single(assembly: Assembly, seed: int) -> Iterator[Solution]:
@@ -124,8 +120,6 @@ def _guess(assembly: Assembly, numbers: Sequence[sp.Rational]) -> Solution | Non
 
 def _constants(assembly: Assembly) -> list[sp.Expr]:
     """The irrational numbers that occur in the residuals, the plainest few."""
-    residuals = assembly.residuals
-    everything = [part.plain for part in residuals.parts] + [m.integrand for p in residuals.parts for m in p.moments]
-    found = set().union(*(e.atoms(sp.NumberSymbol, sp.Function, sp.Pow) for e in everything))
+    found = set().union(*(e.atoms(sp.NumberSymbol, sp.Function, sp.Pow) for e in assembly.residuals.expressions))
     irrational = (c for c in found if c.is_number and c.is_real and not c.is_Rational and 1 / c not in found)
     return sorted(irrational, key=lambda c: (sp.count_ops(c), str(c)))[:3]

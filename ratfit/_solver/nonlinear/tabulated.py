@@ -37,13 +37,14 @@ def tabulated(assembly: Assembly, parameters: Sequence[sp.Symbol], seed: int) ->
     if not all(isinstance(p, Parameter) for p in parameters):
         raise Undecided(f"equations that are not linear need numbers for {', '.join(map(str, parameters))}")
     ordered = tuple(p for p in parameters if isinstance(p, Parameter))
-    for count in GRIDS if len(ordered) == 1 else (None,):
+    counts = GRIDS if len(ordered) == 1 else (None,)
+    for count in counts:
         rough = False
         for branch in _branches(assembly, ordered, count, seed):
             found = _tabulated_branch(assembly, ordered, branch)
             if found is None:
                 continue
-            if found.error > ROUGH and found.guess is None and count != GRIDS[-1] and len(ordered) == 1:
+            if found.error > ROUGH and found.guess is None and count != counts[-1]:
                 rough = True
                 break
             yield _solution(assembly, found)

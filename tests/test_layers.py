@@ -25,15 +25,16 @@ LAYERS = [
     ("_candidates",),
     ("_diagnosis",),
     ("_derive",),
-    ("_study", "_schedule", "_sampling", "_record"),
+    ("_study", "_schedule", "_setting", "_double_double"),
+    ("_sampling", "_record"),
     ("_error", "_speed"),
+    ("gallery", "baselines"),
     ("_bench",),
-    ("gallery",),
     ("report", "plot"),
     ("cli",),
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
-MAY_LOAD_JAX = {"_lower", "_kernel", "_sampling", "_error", "_speed"}
+MAY_LOAD_JAX = {"_lower", "_kernel", "_double_double", "_sampling", "_error", "_speed"}
 
 
 def modules():

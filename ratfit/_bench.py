@@ -12,7 +12,7 @@ import sympy as sp
 from ratfit._error import ErrorMeasurement, measure_error
 from ratfit._fit import Fit
 from ratfit._record import Record
-from ratfit._sampling import setting
+from ratfit._setting import setting
 from ratfit._speed import measure_speed
 
 

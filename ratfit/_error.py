@@ -13,8 +13,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ratfit._kernel import kernel, precision
-from ratfit._sampling import Setting, check_protocol, draw, setting
+from ratfit._kernel import Program, kernel, precision
+from ratfit._sampling import check_protocol, draw
+from ratfit._setting import Setting, setting
 
 if TYPE_CHECKING:
     from jaxtyping import Array, Float, Float64
@@ -169,8 +170,8 @@ def _worst(totals: Totals) -> dict[str, Any]:
 
 
 def _chunks(place: Setting, samples: int, sampling: str, seed: int, dtype: str) -> Iterator[Totals]:
-    fit = kernel(place.formula, place.variable).at(place.values, dtype)
-    exact = kernel(place.exact, place.variable).at(place.values, "float64")
+    fit = kernel(place.program, place.varying).at(place.values, dtype)
+    exact = kernel(Program(place.exact), place.varying).at(place.values, "float64")
     size = min(CHUNK, samples)
     for start in range(0, samples, size):
         # Three kernels, not one: inside one, XLA may skip the rounding to float32 (xla_allow_excess_precision).

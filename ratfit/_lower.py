@@ -38,7 +38,13 @@ _NAMED_ALIKE = (frozenset(_FUNCTIONS.values()) | _ARITHMETIC) - _SPECIAL  # the 
 Operations = Mapping[str, Callable[..., Any]]
 
 
-def lower(expression: sp.Expr, arguments: Sequence[sp.Symbol], backend: str = "numpy") -> Callable[..., Any]:
+Named = tuple[tuple[sp.Symbol, sp.Expr], ...]
+"""Names, each with its formula in the arguments and earlier names."""
+
+
+def lower(
+    expression: sp.Expr, arguments: Sequence[sp.Symbol], backend: str = "numpy", steps: Named = ()
+) -> Callable[..., Any]:
     """Turn an expression into a function of arrays.
 
     **Arguments:**
@@ -46,6 +52,8 @@ def lower(expression: sp.Expr, arguments: Sequence[sp.Symbol], backend: str = "n
     - `expression`: real for real arguments; where it is not, the function gives nan. Its numbers are rounded once.
     - `arguments`: the symbols whose values the function takes, by position.
     - `backend`: `"numpy"` or `"jax"`; JAX is imported for the latter alone.
+    - `steps`: names that the expression uses beside the arguments, each with its formula: a program, computed in the
+        order in which it is written down.
 
     **Returns:** a function of scalars and arrays that broadcast together. It gives an array of their shape and common
     dtype (integers count as the backend's default float); from Python numbers alone, a Python float on NumPy. Division
@@ -56,25 +64,28 @@ def lower(expression: sp.Expr, arguments: Sequence[sp.Symbol], backend: str = "n
     play = {"numpy": _play_numpy, "jax": _play_jax}.get(backend)
     if play is None:
         raise RatfitError(f"no array library {backend!r}: lower to 'numpy' or 'jax'")
-    steps = _steps(sp.sympify(expression, strict=True), tuple(arguments))
+    played = tape(sp.sympify(expression, strict=True), tuple(arguments), steps)
 
     def function(*values: Any) -> Any:
         if len(values) != len(arguments):
             raise TypeError(f"{len(values)} values for the {len(arguments)} arguments {', '.join(map(str, arguments))}")
-        return play(steps, values)
+        return play(played, values)
 
     return function
 
 
 @functools.lru_cache(maxsize=256)
-def _steps(expression: sp.Expr, arguments: tuple[sp.Symbol, ...]) -> tuple[_Step, ...]:
-    tape = _Tape({symbol: place for place, symbol in enumerate(arguments)})
-    result = tape.place(expression)
-    return tuple(tape.steps[: result + 1])
+def tape(expression: sp.Expr, arguments: tuple[sp.Symbol, ...], steps: Named = ()) -> tuple[Step, ...]:
+    """The operations of an expression in order, the last its value: what every player of arrays or code goes by."""
+    made = _Tape({symbol: place for place, symbol in enumerate(arguments)})
+    for name, formula in steps:
+        made.entries[name] = made.place(formula)
+    result = made.place(expression)
+    return tuple(made.steps[: result + 1])
 
 
 @dataclass(frozen=True)
-class _Step:
+class Step:
     """One entry of a tape: an operation on earlier entries, an argument, or a number."""
 
     operation: str
@@ -87,7 +98,7 @@ class _Tape:
     """The steps so far, and the entry of every expression placed: this memo shares the common parts."""
 
     arguments: Mapping[sp.Symbol, int]
-    steps: list[_Step] = field(default_factory=list)
+    steps: list[Step] = field(default_factory=list)
     entries: dict[Any, int] = field(default_factory=dict)
 
     def place(self, node: Any) -> int:
@@ -97,7 +108,7 @@ class _Tape:
         return self.entries[node]
 
     def _step(self, operation: str, *operands: int, number: float = math.nan) -> int:
-        step = _Step(operation, operands, number)
+        step = Step(operation, operands, number)
         if step not in self.entries:
             self.steps.append(step)
             self.entries[step] = len(self.steps) - 1
@@ -204,7 +215,7 @@ def _parted(node: sp.Expr) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
     return (node.func(*numbers),) if numbers else (), tuple(part for part in node.args if part.free_symbols)
 
 
-def _play(steps: Sequence[_Step], values: Sequence[Any], operations: Operations) -> Any:
+def _play(steps: Sequence[Step], values: Sequence[Any], operations: Operations) -> Any:
     entries: list[Any] = []
     for step in steps:
         operands = [entries[operand] for operand in step.operands]
@@ -223,7 +234,7 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float, Fraction, sp.Expr))
 
 
-def _play_numpy(steps: Sequence[_Step], values: Sequence[Any]) -> Any:
+def _play_numpy(steps: Sequence[Step], values: Sequence[Any]) -> Any:
     import numpy as np
 
     values = [float(value) if _is_number(value) else _numpy_floating(value) for value in values]
@@ -288,7 +299,7 @@ def _principal(cbrt: Callable[..., Any], select: Callable[..., Any]) -> Callable
     return lambda base: select(base >= 0, cbrt(base), math.nan)
 
 
-def _play_jax(steps: Sequence[_Step], values: Sequence[Any]) -> Any:
+def _play_jax(steps: Sequence[Step], values: Sequence[Any]) -> Any:
     import jax.numpy as jnp
 
     values = [float(value) if _is_number(value) else _jax_floating(value) for value in values]

@@ -15,9 +15,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ratfit._kernel import kernel, precision
+from ratfit._kernel import Program, kernel, precision
 from ratfit._parse import RatfitError, nearest
-from ratfit._sampling import check_protocol, draw, setting
+from ratfit._sampling import check_protocol, draw
+from ratfit._setting import setting
 
 BACKENDS: Mapping[str, str] = {"jax-cpu": "cpu", "jax-gpu": "gpu"}
 """Name of a backend -> JAX's name of the platform."""
@@ -87,8 +88,8 @@ def measure_speed(
         raise RatfitError(f"repeats = {repeats}: a whole number from 1 upwards is needed, or None")
     place, device = setting(fit, parameters, reference), _device(backend)
     points = jax.device_put(draw("uniform", place.low, place.high, seed, 0, samples, dtype), device)
-    expressions = (place.exact, place.formula, place.variable + 1)
-    runs = [kernel(each, place.variable).at(place.values, dtype, device) for each in expressions]
+    programs = (Program(place.exact), place.program, Program(place.variable + 1))
+    runs = [kernel(each, place.varying).at(place.values, dtype, device) for each in programs]
     exact, fitted, floor = _times(runs, points, dtype, repeats)
     exact_s, fit_s, floor_s = map(statistics.median, (exact, fitted, floor))
     low, high = ratio_interval(exact, fitted)

@@ -12,7 +12,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratfit._kernel import hoist, kernel, precision
+from ratfit._kernel import Program, hoist, kernel, precision
 from ratfit._lower import lower, rounded
 from ratfit._parse import RatfitError
 
@@ -169,17 +169,31 @@ HOISTED = [
 
 @pytest.mark.parametrize(("expression", "constants"), HOISTED, ids=str)
 def test_parts_free_of_the_variable_are_taken_out_and_the_value_stays(expression, constants):
-    hoisted = hoist(expression, x)
+    hoisted = hoist(Program(expression), (x,))
     symbols = {symbol for symbol, _ in hoisted.constants}
     assert len(symbols) == constants
-    assert hoisted.body.free_symbols <= symbols | {x}
-    value = lower(hoisted.body, (x, *(symbol for symbol, _ in hoisted.constants)))(0.75, *hoisted.values({m: 0.375}))
+    assert hoisted.result.free_symbols <= symbols | {x}
+    value = lower(hoisted.result, (x, *(symbol for symbol, _ in hoisted.constants)))(0.75, *hoisted.values({m: 0.375}))
     assert value == pytest.approx(lower(expression, [x, m])(0.75, 0.375), rel=1e-14)
 
 
+def test_steps_free_of_the_variable_are_taken_out_of_a_program_too():
+    k, s, t = sp.symbols("k s t")
+    program = Program(s / (t - m), ((k, m**2 + 1), (s, k * x), (t, s + k * m)))
+    hoisted = hoist(program, (x,))
+    assert program.free_symbols == {x, m}
+    assert [name for name, _ in hoisted.steps] == [s, t]
+    names = [name for name, _ in hoisted.constants]
+    value = lower(hoisted.result, (x, *names), "numpy", hoisted.steps)(0.75, *hoisted.values({m: 0.5}))
+    assert value == 1.25 * 0.75 / (1.25 * 0.75 + 1.25 * 0.5 - 0.5)
+    drawn = hoist(program, (x, m))
+    assert drawn.constants == ()
+    assert lower(drawn.result, (x, m), "numpy", drawn.steps)(0.75, 0.5) == value
+
+
 def test_one_kernel_serves_all_parameter_values():
-    built = kernel(m * x / (1 + m**2 * x), x)
-    assert kernel(m * x / (1 + m**2 * x), x) is built
+    built = kernel(Program(m * x / (1 + m**2 * x)), (x,))
+    assert kernel(Program(m * x / (1 + m**2 * x)), (x,)) is built
     samples = jnp.linspace(0, 1, 3)
     for value in (0.25, 0.5):
         assert built.at({m: value}, "float32")(samples)[2] == pytest.approx(value / (1 + value**2))

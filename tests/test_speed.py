@@ -82,14 +82,18 @@ def test_a_call_is_timed_after_one_of_its_own_and_every_order_comes_equally_ofte
 def test_the_kernels_hold_no_number_wider_than_the_dtype():
     for dtype in ("float32", "float64"):
         for expression in (SMITH.problem.target.expression, SMITH.formula, x + 1):
-            run = _speed.kernel(expression, x).at({k: 0.5}, dtype)
+            run = _speed.kernel(_speed.Program(expression), (x,)).at({k: 0.5}, dtype)
             with _speed.precision(dtype):
                 jaxpr = str(jax.make_jaxpr(run)(jnp.zeros(4, dtype)))
             assert ("f64" in jaxpr, "f32" in jaxpr) == (dtype == "float64", dtype == "float32")
 
 
 def test_a_power_costs_multiplications_and_a_fraction_one_division():
-    text = str(jax.make_jaxpr(_speed.kernel((1 - x) ** 5 / ((x + 2) ** 2 * (3 - x)), x).jitted)(jnp.zeros(4)))
+    text = str(
+        jax.make_jaxpr(_speed.kernel(_speed.Program((1 - x) ** 5 / ((x + 2) ** 2 * (3 - x))), (x,)).jitted)(
+            jnp.zeros(4)
+        )
+    )
     assert "pow[" not in text.replace("integer_pow[", "")
     assert text.count(" div ") == 1
 

@@ -1,0 +1,149 @@
+"""What is measured: an approximant and its exact function, at values of the parameters, on an interval."""
+
+from __future__ import annotations
+
+import math
+import numbers
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from ratfit._kernel import Program
+from ratfit._lower import lower
+from ratfit._parse import RatfitError, nearest
+from ratfit._schedule import schedule
+
+RANDOM = "random"
+"""In place of a parameter's value: every sample draws a value of its own from the parameter's range."""
+
+Value = float | str
+
+
+@dataclass(frozen=True)
+class Setting:
+    """An approximant and the exact function that it stands for, at values of the parameters that may be measured."""
+
+    exact: sp.Expr
+    formula: sp.Expr
+    program: Program  # the formula as it is computed: in the cheapest arrangement found
+    variable: sp.Symbol
+    values: Mapping[sp.Symbol, float]  # of the parameters that stand still, those of the reference among them
+    ranges: Mapping[sp.Symbol, tuple[float, float]]  # of the parameters that every sample draws anew
+    low: float
+    high: float
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The values by name, in the order of the names, and (low, high) of what is drawn: what a record says."""
+        known = {symbol.name: value for symbol, value in (*self.values.items(), *self.ranges.items())}
+        return {name: known[name] for name in sorted(known)}
+
+    @property
+    def varying(self) -> tuple[sp.Symbol, ...]:
+        """The symbols of which every sample has a value of its own: the variable first."""
+        return (self.variable, *self.ranges)
+
+
+def setting(fit: Any, parameters: Mapping[str, Value] | None = None, reference: str | None = None) -> Setting:
+    """What is measured when this fit is, at these parameter values.
+
+    **Arguments:**
+
+    - `fit`: a `Fit`, or anything with a `problem` and a `formula`, which may hold the variable and the parameters, but
+      no coefficient that is still free.
+    - `parameters`: the value of each parameter by name, or `"random"`: each sample then draws one from its range,
+      uniformly. A value that the reference gives may be left out.
+    - `reference`: the name of one of the problem's references; without one the target is the exact function.
+
+    **Fails** with `RatfitError` where there is nothing exact to compare with, and for a value that is missing, unknown,
+    outside its range or in contradiction with the reference.
+    """
+    problem = fit.problem
+    asked = dict(parameters or {})
+    exact, given = _exact(problem, reference)
+    values = _values(problem, {name: value for name, value in asked.items() if value != RANDOM}, given)
+    ranges = _ranges(problem, [name for name, value in asked.items() if value == RANDOM], given)
+    for parameter in problem.parameters:
+        if parameter not in ranges:
+            _check_range(parameter, values)
+    _check_free(fit, {*values, *ranges})
+    low, high = (_number(end, values, "the domain", ranges) for end in problem.domain)
+    if not -math.inf < low < high < math.inf:
+        raise RatfitError(f"the domain [{low}, {high}] cannot be sampled: measure on finite ends, low < high")
+    return Setting(exact, fit.formula, arranged(fit), problem.variable, values, ranges, low, high)
+
+
+def arranged(fit: Any) -> Program:
+    """The formula of a fit in the cheapest arrangement found: what is timed, and what errors are measured of."""
+    if fit.formula.has(sp.nan, sp.zoo, sp.oo, -sp.oo):  # infinite somewhere: a fit all the same, and measured as it is
+        return Program(fit.formula)
+    problem = fit.problem
+    ranges = {problem.variable: problem.domain, **{p: (p.low, p.high) for p in problem.parameters}}
+    found = schedule(fit.formula, problem.variable, ranges)
+    return Program(found.result, (*found.constants, *found.steps))
+
+
+def _ranges(problem: Any, names: list[str], given: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, tuple[float, float]]:
+    known = {parameter.name: parameter for parameter in problem.parameters if parameter not in given}
+    for name in names:
+        if name not in known:
+            there = ", ".join(known) or "none"
+            raise RatfitError(f"no parameter {name!r} to draw at random, there is: {there}{nearest(name, known)}")
+    return {known[name]: (float(known[name].low), float(known[name].high)) for name in sorted(names)}
+
+
+def _exact(problem: Any, reference: str | None) -> tuple[sp.Expr, Mapping[sp.Symbol, sp.Expr]]:
+    known = {each.name: each for each in problem.references}
+    names = ", ".join(known) or "none"
+    if reference is not None:
+        if reference not in known:
+            raise RatfitError(f"no reference {reference!r}, there is: {names}{nearest(reference, known)}")
+        return known[reference].expression, known[reference].parameters
+    if problem.target is None:
+        raise RatfitError(f"this problem has no target, so eps and gamma need a reference; it has: {names}")
+    return problem.target.expression, {}
+
+
+def _values(problem: Any, asked: Mapping[str, Value], given: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, float]:
+    symbols = {symbol.name: symbol for symbol in (*problem.parameters, *given)}
+    known = ", ".join(symbols) or "none"
+    for name, value in asked.items():
+        if name not in symbols:
+            raise RatfitError(f"no parameter {name!r}, there is: {known}{nearest(name, symbols)}")
+        if not (isinstance(value, numbers.Real) or (isinstance(value, sp.Expr) and value.is_extended_real)):
+            raise RatfitError(f"{name} = {value!r}: a number is needed")
+    values = {symbols[name]: float(value) for name, value in asked.items()}
+    for symbol, expression in given.items():
+        # A reference may write one of its values in terms of others, its reflectance f in terms of its index n.
+        value = _number(expression.subs(given), values, f"{symbol.name} under this reference")
+        if values.setdefault(symbol, value) != value:
+            raise RatfitError(f"the reference says {symbol.name} = {value}: leave {symbol.name} = {values[symbol]} out")
+    return values
+
+
+def _check_range(parameter: Any, values: Mapping[sp.Symbol, float]) -> None:
+    low, high = float(parameter.low), float(parameter.high)
+    if parameter not in values:
+        raise RatfitError(f"the parameter {parameter.name} has no value: give it one in [{low}, {high}]")
+    if not low <= values[parameter] <= high:
+        raise RatfitError(f"{parameter.name} = {values[parameter]} is outside its range [{low}, {high}]")
+
+
+def _check_free(fit: Any, known: set[sp.Symbol]) -> None:
+    free = sorted(symbol.name for symbol in fit.formula.free_symbols - {fit.problem.variable, *known})
+    if free:
+        raise RatfitError(f"still free: {', '.join(free)}; choose a value, in [choice] or with --set {free[0]}=...")
+
+
+def _number(
+    expression: sp.Expr, values: Mapping[sp.Symbol, float], what: str, drawn: Mapping[sp.Symbol, Any] | None = None
+) -> float:
+    moving = sorted(symbol.name for symbol in expression.free_symbols & set(drawn or {}))
+    if moving:
+        raise RatfitError(f"{what} depends on {', '.join(moving)}, which cannot be random: give it a value")
+    missing = sorted(symbol.name for symbol in expression.free_symbols - set(values))
+    if missing:
+        raise RatfitError(f"{what} needs a value of {', '.join(missing)}: add it to the parameters")
+    return lower(expression, tuple(values))(*values.values())

@@ -1,0 +1,87 @@
+"""How much an eps may differ between two rows without meaning anything."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from ratfit._record.row import Row
+
+PRECISION = 1e-9
+"""Relative change of an eps of one sample on one kind of machine that is none: sums may be added up differently."""
+
+ELSEWHERE = 1e-3
+"""The same on another kind of machine, besides rounding of the type under test."""
+
+ROUNDINGS = 8
+"""Roundings of the type under test by which errors may differ where compilers fuse and order operations differently."""
+
+SIGMAS = 5.0
+"""Standard deviations of chance beyond which a change is one."""
+
+_UNITS: Mapping[str, float] = {"float16": 2.0**-10, "float32": 2.0**-23, "float64": 2.0**-52}
+_DIVISORS = ("peak", "range", "mean")
+"""First words of definitions that divide an absolute error by a property of the exact function's sampled values."""
+
+
+def elsewhere(name: str, old: Row, new: Row) -> tuple[float, str]:
+    """The limit for the same sample on another kind of machine: `ELSEWHERE` of eps and some roundings."""
+    largest = max(abs(old["epsilon"][name]), abs(new["epsilon"][name]))
+    rounding = ROUNDINGS * _unit(name, new)
+    why = f"another processor, JAX or NumPy: compared beyond {ELSEWHERE:.1%} and {ROUNDINGS} roundings"
+    return ELSEWHERE * largest + rounding, why
+
+
+def _unit(name: str, row: Row) -> float:
+    """One rounding of the type under test, in the unit of the definition."""
+    if name.startswith("ulp"):
+        return 1.0
+    unit = _UNITS.get(row["dtype"], 0.0)
+    return unit * (_divisor("peak", row) or 1.0) if name.startswith("absolute") else unit
+
+
+def sampling(name: str, old: Row, new: Row) -> tuple[float | None, str]:
+    """The limit for another sample: `SIGMAS` standard deviations of a mean, for means alone.
+
+    A maximum, a quantile or a bias of another sample has no such limit, so None. The relative standard deviation of n
+    errors' mean is at most sqrt((max/mean - 1)/n), since errors between 0 and max scatter by no more than
+    sqrt(mean*(max - mean)); that of their rms at most sqrt(((max/rms)^2 - 1)/n)/2, by the same for the squares. Where
+    the definition divides by what was sampled too, the change of that divisor is let pass on top.
+    """
+    family, _, kind = name.rpartition("_")
+    if kind not in ("mean", "rms"):
+        return None, "another sample: only means and rms are compared"
+    before, after = _scatter(family, kind, old), _scatter(family, kind, new)
+    drift = _drift(family, old, new)
+    if before is None or after is None or drift is None:
+        return None, "another sample: the rows do not hold what bounds its noise"
+    share = SIGMAS * math.hypot(before, after) + drift
+    if share > 0.5:
+        return None, "another sample: too few samples, or errors too uneven, to tell"
+    largest = max(abs(old["epsilon"][name]), abs(new["epsilon"][name]))
+    return share * largest, f"another sample: compared beyond {share:.2g} of eps"
+
+
+def _scatter(family: str, kind: str, row: Row) -> float | None:
+    """A bound of the relative standard deviation of a mean or an rms, from the row itself; at least 1/sqrt(n)."""
+    value, most = row["epsilon"].get(f"{family}_{kind}"), row["epsilon"].get(f"{family}_max")
+    if value is None or most is None:
+        return None
+    if value == 0:
+        return 0.0
+    uneven = most / value - 1 if kind == "mean" else ((most / value) ** 2 - 1) / 4
+    return math.sqrt(max(uneven, 1.0) / max(row["samples"], 1))
+
+
+def _drift(family: str, old: Row, new: Row) -> float | None:
+    """The relative change of what a family of definitions divides by; 0 where that is no property of the sample."""
+    if family not in _DIVISORS:
+        return 0.0
+    before, after = _divisor(family, old), _divisor(family, new)
+    return None if before is None or after is None else abs(after - before) / max(before, after)
+
+
+def _divisor(family: str, row: Row) -> float | None:
+    """What this row's definitions of the family were divided by, as the ratio of two of them; None if unknown."""
+    absolute, divided = row["epsilon"].get("absolute_max"), row["epsilon"].get(f"{family}_max")
+    return absolute / divided if absolute and divided else None

@@ -42,6 +42,51 @@ Named = tuple[tuple[sp.Symbol, sp.Expr], ...]
 """Names, each with its formula in the arguments and earlier names."""
 
 
+class Entries(sp.Atom):
+    """The numbers of a look-up table: one object of an expression, however many they are."""
+
+    __slots__ = ("values",)
+    values: tuple[float, ...]
+
+    def __new__(cls, values: Sequence[float]) -> Entries:
+        kept = tuple(map(float, values))
+        if len(kept) < 2 or not all(map(math.isfinite, kept)):
+            raise RatfitError("a table needs two entries or more, each a finite number")
+        entries = super().__new__(cls)
+        entries.values = kept
+        return entries
+
+    def _hashable_content(self) -> tuple[float, ...]:
+        return self.values
+
+    def __getnewargs__(self) -> tuple[tuple[float, ...]]:
+        return (self.values,)
+
+    def _sympystr(self, printer: Any) -> str:
+        return f"<{len(self.values)} entries>"
+
+
+class Lookup(sp.Function):
+    """`Lookup(position, Entries(values))`: linear interpolation in a table, the position counted in entries from 0.
+
+    Before the first entry it is the first, after the last the last. It is made for arrays: it has no derivative.
+    """
+
+    nargs = 2
+
+    def _eval_evalf(self, prec: int) -> sp.Expr | None:
+        position, values = self.args[0]._eval_evalf(prec), self.args[1].values
+        if not (isinstance(position, sp.Number) and position.is_finite):
+            return None
+        position = sp.Min(sp.Max(position, 0), len(values) - 1)
+        below = min(int(position), len(values) - 2)
+        first, second = (sp.Float(value, precision=prec) for value in values[below : below + 2])
+        return first + (position - below) * (second - first)
+
+    def _eval_derivative(self, s: sp.Symbol) -> sp.Expr:
+        raise RatfitError(f"{self} is a table, which has no derivative: take that of the function in it")
+
+
 def lower(
     expression: sp.Expr, arguments: Sequence[sp.Symbol], backend: str = "numpy", steps: Named = ()
 ) -> Callable[..., Any]:
@@ -91,6 +136,7 @@ class Step:
     operation: str
     operands: tuple[int, ...] = ()
     number: float = math.nan  # the value of a "number", the place of an "argument", the exponent of an "integer_power"
+    table: tuple[float, ...] = ()  # the entries of a "table", the last one twice: so there is one above any position
 
 
 @dataclass
@@ -107,8 +153,8 @@ class _Tape:
             self.entries[node] = self._compose(node)
         return self.entries[node]
 
-    def _step(self, operation: str, *operands: int, number: float = math.nan) -> int:
-        step = Step(operation, operands, number)
+    def _step(self, operation: str, *operands: int, number: float = math.nan, table: tuple[float, ...] = ()) -> int:
+        step = Step(operation, operands, number, table)
         if step not in self.entries:
             self.steps.append(step)
             self.entries[step] = len(self.steps) - 1
@@ -186,6 +232,9 @@ class _Tape:
     def _function(self, node: Any) -> int:
         if node.func in _RECIPROCALS:
             return self._step("divide", self.place(sp.S.One), self.place(_RECIPROCALS[node.func](*node.args)))
+        if isinstance(node, Lookup):
+            position, entries = node.args
+            return self._step("table", self.place(position), table=(*entries.values, entries.values[-1]))
         if node.func not in _FUNCTIONS:
             raise RatfitError(f"arrays have no {node.func.__name__}, as in {node}: write it in other functions")
         operation, operands = _FUNCTIONS[node.func], [self.place(part) for part in node.args]
@@ -225,6 +274,8 @@ def _play(steps: Sequence[Step], values: Sequence[Any], operations: Operations) 
             entries.append(values[int(step.number)])
         elif step.operation == "integer_power":
             entries.append(operations["integer_power"](*operands, int(step.number)))
+        elif step.operation == "table":
+            entries.append(operations["table"](*operands, step.table))
         else:
             entries.append(operations[step.operation](*operands))
     return entries[-1]
@@ -267,10 +318,17 @@ def _numpy_operations(dtype: Any) -> Operations:
         # `where` is no ufunc: two Python floats would make it float64, whatever the dtype of the arrays.
         return np.where(condition, *(dtype.type(part) if isinstance(part, float) else part for part in (chosen, other)))
 
+    def table(position: Any, values: tuple[float, ...]) -> Any:
+        floor, part = _split(position, len(values) - 2, np)
+        entries = np.asarray(values, dtype)
+        index = np.clip(floor.astype(np.intp), 0, len(values) - 2)  # of a nan too, whose integer is any
+        found = entries[index] + part * (entries[index + 1] - entries[index])
+        return float(found) if isinstance(position, float) else found
+
     operations = {name: getattr(np, name) for name in _NAMED_ALIKE}
     operations |= {name: getattr(scipy.special, name) for name in _SPECIAL}
     operations |= {"select": select, "integer_power": repeated_product, "cbrt": _principal(np.cbrt, select)}
-    return {name: _unboxed(operation) for name, operation in operations.items()}
+    return {name: _unboxed(operation) for name, operation in operations.items()} | {"table": table}
 
 
 def _unboxed(operation: Callable[..., Any]) -> Callable[..., Any]:
@@ -292,6 +350,13 @@ def repeated_product(base: Any, exponent: int) -> Any:
         exponent //= 2
         base = base * base if exponent else base
     return power
+
+
+def _split(position: Any, last: int, numpy: Any) -> tuple[Any, Any]:
+    """A position in a table, held between the first entry and the last, as a whole number and what is left."""
+    held = numpy.minimum(numpy.maximum(position, 0), last)
+    floor = numpy.floor(held)
+    return floor, held - floor
 
 
 def _principal(cbrt: Callable[..., Any], select: Callable[..., Any]) -> Callable[..., Any]:
@@ -326,8 +391,15 @@ def _jax_operations() -> Operations:
     def loggamma(x: Any) -> Any:
         return jnp.where(x < 0, math.nan, jax.scipy.special.gammaln(x))
 
+    def table(position: Any, values: tuple[float, ...]) -> Any:
+        floor, part = _split(position, len(values) - 2, jnp)
+        entries = jnp.asarray(values, floor.dtype)
+        index = jnp.clip(floor.astype(int), 0, len(values) - 2)
+        return entries[index] + part * (entries[index + 1] - entries[index])
+
     operations = {name: getattr(jnp, name) for name in _NAMED_ALIKE}
     operations |= {name: getattr(jax.scipy.special, name) for name in _SPECIAL - {"loggamma"}} | {"loggamma": loggamma}
     return operations | {
         "select": jnp.where, "integer_power": jax.lax.integer_pow, "cbrt": _principal(jnp.cbrt, jnp.where),
+        "table": table,
     }  # fmt: skip

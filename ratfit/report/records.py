@@ -1,0 +1,164 @@
+"""`ratfit report`: the rows of record files as one Markdown page and one HTML page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ratfit._error import DEFINITIONS
+from ratfit._parse import RatfitError
+from ratfit._record import Row, read_rows
+from ratfit.report.document import Block, Cell, Code, Column, Details, Document, Facts, Link, Paragraph, Section, Table
+from ratfit.report.measured import circumstances, count, epsilon_range, gamma, gamma_range, name_of
+from ratfit.report.problem_section import Measured, counts, problem_section
+from ratfit.report.write import write_document
+
+EPS = """\
+eps says how far a fit is from the exact function: a fraction (0.0136, not 1.36 %), and never alone, for it depends on \
+its definition, on how the samples are drawn, and on the type that the fit is computed in. The exact function is \
+computed with more precision than the fit, at the very samples. Samples where either is not finite are left out and \
+counted."""
+GAMMA = """\
+gamma is the exact function's time over the fit's (31.8, not 3180 %), measured in turn in one run, with its 95 % \
+interval. The floor is the time of copying the samples; it is not subtracted. A fit that runs at the floor is limited \
+by memory, and its gamma is a lower bound. On the backend cost-model nothing is timed: gamma is a ratio of counted \
+operations, each with a weight."""
+
+
+def run_report(paths: Sequence[str], out: str) -> int:
+    """Reads record files and writes report.html, report.md and its figures into the folder `out`, made if missing.
+
+    Prints what was written, and returns the exit status. **Fails** with `RatfitError` for a file that is missing, is no
+    record or holds no row, and for a folder that cannot be made.
+    """
+    rows = [row for path in paths for row in _rows(path)]
+    written = write_report(rows, _folder(out))
+    print(f"wrote {written[0]} and {written[1]}")
+    return 0
+
+
+def write_report(rows: Sequence[Row], folder: str | Path, name: str = "report") -> tuple[Path, ...]:
+    """Writes the page of these rows as `name.html` and `name.md` with figures; returns the paths, pages first."""
+    return write_document(document_of(rows), Path(folder), name)
+
+
+def _rows(path: str) -> list[Row]:
+    if not Path(path).exists():
+        raise RatfitError(f"{path}: there is no such file; name one that bench --out has written")
+    rows = read_rows(path)
+    if not rows:
+        raise RatfitError(f"{path} holds no row; measure some with bench --out {path}")
+    return rows
+
+
+def _folder(out: str) -> Path:
+    folder = Path(out)
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise RatfitError(f"--out {out}: no folder can be made there ({error.strerror}); name another") from None
+    return folder
+
+
+def document_of(rows: Sequence[Row]) -> Document:
+    """The page of these rows: a section a problem, in the order in which the rows first name them.
+
+    The rows are objects as in a line of a record file; equal rows count once. The numbers of one problem with different
+    formulas (another choice of a free coefficient, say) are different sections. **Fails** with `RatfitError`
+    without rows.
+    """
+    if not rows:
+        raise RatfitError("no rows: name a file that bench --out has written")
+    problems = tuple(_problems(_once(rows)))
+    title = f"{problems[0].title}: accuracy and speed" if len(problems) == 1 else "Fits: accuracy and speed"
+    sections = tuple(problem_section(problem) for problem in problems)
+    return Document(title, tuple(_lead(problems)), sections, (_meaning(rows), _making(rows)))
+
+
+def _once(rows: Sequence[Row]) -> list[Row]:
+    found: list[Row] = []
+    for row in rows:
+        if row not in found:
+            found.append(row)
+    return found
+
+
+def _problems(rows: Sequence[Row]) -> Iterator[Measured]:
+    """Rows by problem and formula; a peer's row goes with the formula of the same problem that was seen last."""
+    groups: dict[tuple[str, str | None], list[Row]] = {}
+    last: dict[str, tuple[str, str | None]] = {}
+    for row in rows:
+        name, fit = name_of(row), row.get("fit")
+        key = (name.problem, fit["expression"] if fit else None)
+        if name.peer or fit is None:
+            key = last.get(name.problem, key)
+        last[name.problem] = key
+        groups.setdefault(key, []).append(row)
+    titles: dict[str, int] = {}
+    for number, ((problem, _), group) in enumerate(groups.items(), 1):
+        titles[problem] = titles.get(problem, 0) + 1
+        again = f" ({titles[problem]})" if titles[problem] > 1 else ""
+        yield Measured(number, problem + again, tuple(group))
+
+
+def _lead(problems: Sequence[Measured]) -> Iterator[Block]:
+    if len(problems) > 1:
+        yield _overview(problems)
+
+
+def _overview(problems: Sequence[Measured]) -> Table:
+    head = (
+        Column("problem"), Column("eps of"), Column("eps", numeric=True), Column("gamma on"),
+        Column("gamma", numeric=True), Column("operations"),
+    )  # fmt: skip
+    return Table(head, tuple(_overview_row(problem) for problem in problems))
+
+
+def _overview_row(problem: Measured) -> tuple[Cell, ...]:
+    errors, times, fit = problem.with_errors(), problem.with_times(), problem.fit
+    worst = max((row["epsilon"][problem.leading] for row in errors), default=None)
+    return (
+        Cell(Link(problem.title, problem.title)),
+        Cell(Code(problem.leading)),
+        Cell(epsilon_range(errors, problem.leading), worst),
+        Cell(circumstances(times[0])[0] if times else "–"),
+        Cell(
+            gamma(times[0]) if len(times) == 1 else gamma_range(times),
+            min((row["gamma"] for row in times), default=None),
+        ),
+        Cell(counts(fit["cost"]) if fit and fit["cost"] else "–"),
+    )
+
+
+def _meaning(rows: Sequence[Row]) -> Section:
+    names = dict.fromkeys(name for row in rows for name in row["epsilon"])
+    head = (Column("definition"), Column("formula"))
+    lines = tuple((Cell(Code(name)), Cell(Code(DEFINITIONS[name]))) for name in names if name in DEFINITIONS)
+    definitions = (Details("Definitions of eps", (Table(head, lines),)),) if lines else ()
+    return Section("What the numbers mean", (Paragraph(EPS), Paragraph(GAMMA), *definitions))
+
+
+def _making(rows: Sequence[Row]) -> Section:
+    finished = sorted(row["finished"] for row in rows if row.get("finished"))
+    dates = (
+        f", finished {finished[0]}" + (f" to {finished[-1]}" if finished[0] != finished[-1] else "") if finished else ""
+    )
+    blocks: list[Block] = [Paragraph(f"{count(len(rows))} measured rows{dates}.")]
+    machines: list[Mapping[str, Any]] = []
+    for row in rows:
+        if row.get("machine") and row["machine"] not in machines:
+            machines.append(row["machine"])
+    blocks += [Facts(tuple(_machine(machine))) for machine in machines]
+    return Section("How they were measured", tuple(blocks))
+
+
+def _machine(machine: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """What a record says of a machine, whatever that is: its fields are not this page's business."""
+    for key, value in machine.items():
+        if isinstance(value, Mapping):
+            yield key, ", ".join(f"{name} {part}" for name, part in value.items() if part is not None)
+        elif isinstance(value, (list, tuple)):
+            yield key, ", ".join(map(str, value)) or "–"
+        elif value is not None:
+            yield key, str(value)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,42 +47,58 @@ class Change:
 def compare(old: Sequence[Row], new: Sequence[Row]) -> list[Change]:
     """Every quantity of every measurement, then and now; of a measurement that was made twice the last row stands.
 
-    Rows are paired by `IDENTITY`; those left over once more without samples and seed, and are then compared as far as
-    another sample allows. eps is the same for the same sample on the same kind of machine, so there any change counts;
-    elsewhere, and for other samples, only what rounding or chance cannot explain (`_record/noise.py`). gamma is worse
-    or better only where its two intervals lie apart and it changed by more than `GAMMA`, and is not compared between
-    different processors.
+    Rows are paired by `IDENTITY`, those of the same processor first; what is left over once more without samples and
+    seed, and is then compared as far as another sample allows. eps is the same for the same sample on the same kind of
+    machine, so there any change counts; elsewhere, and for other samples, only what rounding or chance cannot explain
+    (`_record/noise.py`). gamma is worse or better only where its two intervals lie apart and it changed by more than
+    `GAMMA`, and is not compared between different processors.
     """
     before, after = _last(old), _last(new)
-    pairs = [(before.pop(key), after.pop(key)) for key in list(after) if key in before]
-    pairs += _pairs_of_other_samples(before, after)
+    pairs = [pair for key in (_here, _anywhere, _of_any_sample) for pair in _take_pairs(before, after, key)]
     changes = [change for then, now in pairs for change in _pair(then, now)]
-    changes += [_whole(row, "gone", "it is in the old rows alone") for row in before.values()]
-    return changes + [_whole(row, "added", "it is in the new rows alone") for row in after.values()]
+    changes += [_whole(row, "gone", "in the old rows alone") for row in before]
+    return changes + [_whole(row, "added", "in the new rows alone") for row in after]
 
 
-def _last(rows: Iterable[Row]) -> dict[Key, Row]:
-    return {_key(row, IDENTITY): row for row in rows}
+def _last(rows: Iterable[Row]) -> list[Row]:
+    return list({_here(row): row for row in rows}.values())
 
 
-def _key(row: Row, keys: Iterable[str]) -> Key:
-    return tuple(_parameters(row) if key == "parameters" else row[key] for key in keys)
+def _take_pairs(before: list[Row], after: list[Row], key: Callable[[Row], Key]) -> list[tuple[Row, Row]]:
+    """Takes the rows that agree in a key out of both lists; of several, those of most samples come first."""
+    waiting = defaultdict(list)
+    for row in sorted(before, key=_samples):
+        waiting[key(row)].append(row)
+    found = sorted(after, key=_samples, reverse=True)
+    pairs = [(waiting[key(row)].pop(), row) for row in found if waiting[key(row)]]
+    taken = {id(row) for pair in pairs for row in pair}
+    for rows in (before, after):
+        rows[:] = [row for row in rows if id(row) not in taken]
+    return pairs
+
+
+def _samples(row: Row) -> int:
+    return row["samples"]
+
+
+def _here(row: Row) -> Key:
+    """The measurement, on this processor."""
+    return *_anywhere(row), repr(_where(row))
+
+
+def _anywhere(row: Row) -> Key:
+    """The measurement, whatever it was made on."""
+    return *_of_any_sample(row), row["samples"], row["seed"]
+
+
+def _of_any_sample(row: Row) -> Key:
+    keys = [key for key in IDENTITY if key not in ("parameters", "samples", "seed")]
+    return *(row[key] for key in keys), *_parameters(row)
 
 
 def _parameters(row: Row) -> Key:
     given = sorted(row["parameters"].items())
     return tuple((name, tuple(value) if isinstance(value, list) else value) for name, value in given)
-
-
-def _pairs_of_other_samples(before: dict[Key, Row], after: dict[Key, Row]) -> list[tuple[Row, Row]]:
-    """Takes the rows that differ in samples and seed alone out of both, the largest samples first."""
-    keys = [key for key in IDENTITY if key not in ("samples", "seed")]
-    pairs = []
-    for place, now in sorted(after.items(), key=lambda item: -item[1]["samples"]):
-        alike = [at for at, then in before.items() if _key(then, keys) == _key(now, keys)]
-        if alike:
-            pairs.append((before.pop(max(alike, key=lambda at: before[at]["samples"])), after.pop(place)))
-    return pairs
 
 
 def _whole(row: Row, verdict: str, why: str) -> Change:
@@ -123,6 +140,8 @@ def _epsilon_verdict(name: str, old: Row, new: Row) -> tuple[str, str]:
     if before[name] == after[name]:
         return "same", ""
     if before[name] is None or after[name] is None:
+        if not _same_sample(old, new):
+            return "incomparable", "another sample: it has a value in one of them alone"
         return ("worse", "it has no value any more") if after[name] is None else ("better", "it had no value")
     limit, why = _limit(name, old, new)
     if limit is None:

@@ -13,6 +13,9 @@ PRECISION = 1e-9
 ELSEWHERE = 1e-3
 """The same on another kind of machine, besides rounding of the type under test."""
 
+TELLING = 0.5
+"""A limit above this share of eps says nothing, and is none."""
+
 ROUNDINGS = 8
 """Roundings of the type under test by which errors may differ where compilers fuse and order operations differently."""
 
@@ -43,34 +46,31 @@ def _unit(name: str, row: Row) -> float:
 def sampling(name: str, old: Row, new: Row) -> tuple[float | None, str]:
     """The limit for another sample: `SIGMAS` standard deviations of a mean, for means alone.
 
-    A maximum, a quantile or a bias of another sample has no such limit, so None. The relative standard deviation of n
-    errors' mean is at most sqrt((max/mean - 1)/n), since errors between 0 and max scatter by no more than
-    sqrt(mean*(max - mean)); that of their rms at most sqrt(((max/rms)^2 - 1)/n)/2, by the same for the squares. Where
-    the definition divides by what was sampled too, the change of that divisor is let pass on top.
+    A maximum, a quantile or a bias of another sample has no such limit, so None. Errors between 0 and max scatter by no
+    more than sqrt(mean*(max - mean)), so two means of n and m errors differ by no more than chance, relative to the
+    mean, of sqrt((max/mean - 1)*(1/n + 1/m)); for two rms that is sqrt(((max/rms)^2 - 1)*(1/n + 1/m))/2, by the same
+    for the squares. Maximum and mean are the larger ones of the two rows: a sample may have missed what is rare. Where the
+    definition divides by what was sampled too, the change of that divisor is let pass on top.
     """
     family, _, kind = name.rpartition("_")
     if kind not in ("mean", "rms"):
         return None, "another sample: only means and rms are compared"
-    before, after = _scatter(family, kind, old), _scatter(family, kind, new)
+    values, most = _both(name, old, new), _both(f"{family}_max", old, new)
     drift = _drift(family, old, new)
-    if before is None or after is None or drift is None:
+    if values is None or most is None or drift is None:
         return None, "another sample: the rows do not hold what bounds its noise"
-    share = SIGMAS * math.hypot(before, after) + drift
-    if share > 0.5:
+    ratio = max(most) / max(values)
+    uneven = ratio - 1 if kind == "mean" else (ratio**2 - 1) / 4
+    share = SIGMAS * math.sqrt(max(uneven, 1.0) * (1 / max(old["samples"], 1) + 1 / max(new["samples"], 1))) + drift
+    if share > TELLING:
         return None, "another sample: too few samples, or errors too uneven, to tell"
-    largest = max(abs(old["epsilon"][name]), abs(new["epsilon"][name]))
-    return share * largest, f"another sample: compared beyond {share:.2g} of eps"
+    return share * max(values), f"another sample: compared beyond {share:.2g} of eps"
 
 
-def _scatter(family: str, kind: str, row: Row) -> float | None:
-    """A bound of the relative standard deviation of a mean or an rms, from the row itself; at least 1/sqrt(n)."""
-    value, most = row["epsilon"].get(f"{family}_{kind}"), row["epsilon"].get(f"{family}_max")
-    if value is None or most is None:
-        return None
-    if value == 0:
-        return 0.0
-    uneven = most / value - 1 if kind == "mean" else ((most / value) ** 2 - 1) / 4
-    return math.sqrt(max(uneven, 1.0) / max(row["samples"], 1))
+def _both(name: str, old: Row, new: Row) -> tuple[float, float] | None:
+    """The values of a definition in both rows; None if one has none."""
+    before, after = old["epsilon"].get(name), new["epsilon"].get(name)
+    return None if before is None or after is None else (before, after)
 
 
 def _drift(family: str, old: Row, new: Row) -> float | None:

@@ -1,0 +1,110 @@
+"""Original: the exact function at the values of the parameters that are measured, which every peer is made from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import mpmath
+import numpy as np
+import sympy as sp
+
+from ratfit._lower import lower
+from ratfit._parse import RatfitError
+from ratfit._setting import setting
+from ratfit._study.curve import Number, numbers_of
+from ratfit._target import exact
+
+NODES = 1024
+"""Chebyshev nodes that polynomial and AAA see: the last but one lies 2e-6 of the domain from its end."""
+
+
+@dataclass(frozen=True)
+class Original:
+    """An exact function of one variable on [low, high], as an expression and in numbers."""
+
+    expression: sp.Expr  # in the variable alone
+    variable: sp.Symbol
+    low: float
+    high: float
+
+    @property
+    def ends(self) -> tuple[sp.Expr, sp.Expr]:
+        """The ends as exact numbers: what the doubles' shortest text says."""
+        return exact(self.low), exact(self.high)
+
+    @property
+    def middle(self) -> sp.Expr:
+        return sp.Add(*self.ends) / 2
+
+    def values(self, places: np.ndarray) -> np.ndarray:
+        """The values in float64, the limit from inside the domain where the formula gives no number, as for 0/0.
+
+        **Fails** with `RatfitError` where there is no finite limit.
+        """
+        found = np.array(lower(self.expression, [self.variable])(places), float)
+        for k in np.flatnonzero(~np.isfinite(found)):
+            found[k] = self.limit(float(places[k]))
+        return found
+
+    @cached_property
+    def number(self) -> Number:
+        """The function at mpmath's working precision; None where it is no finite real number."""
+        return numbers_of(self.expression, self.variable)
+
+    def limit(self, place: float) -> float:
+        """The limit from inside the domain. **Fails** with `RatfitError` where two steps do not see the same one."""
+        span = (self.high - self.low) * self.side(place)
+        with mpmath.workdps(200):
+            first, second = (self.number(place + span * mpmath.mpf(10) ** -k) for k in (30, 40))
+            settled = first is not None and second is not None and abs(first - second) <= abs(second) * 1e-9 + 1e-18
+            value = float(second) if settled and second is not None else np.nan
+        if not np.isfinite(value):
+            raise RatfitError(f"the exact function has no finite value at {self.variable} = {place:.6g}")
+        return value
+
+    def side(self, place: float) -> int:
+        """The direction in which the domain's farther end lies."""
+        return 1 if place - self.low <= self.high - place else -1
+
+    @cached_property
+    def angles(self) -> np.ndarray:
+        return (np.arange(NODES) + 0.5) * (np.pi / NODES)
+
+    @cached_property
+    def nodes(self) -> np.ndarray:
+        """Chebyshev's nodes on the domain, none of them an end, from the high one downwards as the angles grow."""
+        return self.low + (self.high - self.low) * (1 + np.cos(self.angles)) / 2
+
+    @cached_property
+    def at_nodes(self) -> np.ndarray:
+        return self.values(self.nodes)
+
+    @cached_property
+    def places(self) -> np.ndarray:
+        """Where errors are looked at: the nodes, and as many places at even distances."""
+        return np.concatenate([self.nodes, self.low + (self.high - self.low) * (np.arange(NODES) + 0.5) / NODES])
+
+    @cached_property
+    def at_places(self) -> np.ndarray:
+        return self.values(self.places)
+
+    def peak_error(self, values: np.ndarray) -> float:
+        """The largest error of these values at the `places`, in units of the peak; infinite where one is no number."""
+        peak = np.max(np.abs(self.at_places)) or 1.0
+        error = np.max(np.abs(values.astype(float) - self.at_places)) / peak
+        return float(error) if np.isfinite(error) else np.inf
+
+    def float32_error(self, formula: sp.Expr) -> float:
+        """The same of a formula in the variable, computed in float32: rounding takes part."""
+        places = self.places.astype(np.float32)
+        return self.peak_error(lower(formula, [self.variable])(places))
+
+
+def original_of(fit: Any, parameters: Mapping[str, float | str] | None, reference: str | None) -> Original:
+    """The exact function that `setting` says a fit stands for. **Fails** with `RatfitError` as `setting` does."""
+    place = setting(fit, parameters, reference)
+    known = {symbol: exact(value) for symbol, value in place.values.items()}
+    return Original(place.exact.xreplace(known), place.variable, place.low, place.high)

@@ -28,4 +28,4 @@ def formula(text: str, names: Iterable[str]) -> Formula:
     except RatfitError:
         return Formula(text)  # a record of another version may hold what this one does not read
     drawn = mathml(rounded(expression), printer="presentation")
-    return Formula(text, drawn)
+    return Formula(text, drawn.replace("<mo>-</mo>", "<mo>−</mo>"))

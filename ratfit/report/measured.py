@@ -60,6 +60,11 @@ def parameters(row: Row) -> str:
     return ", ".join(f"{name} = {parameter(value)}" for name, value in row["parameters"].items())
 
 
+def label(row: Row) -> str:
+    """The reference and the values of the parameters: what tells the rows of one method apart."""
+    return ", ".join(filter(None, (name_of(row).reference, parameters(row))))
+
+
 def parameter(value: Any) -> str:
     """One parameter's value."""
     if isinstance(value, (list, tuple)):

@@ -8,10 +8,13 @@ from typing import Any
 
 from ratfit._error import DEFINITIONS
 from ratfit._parse import RatfitError
-from ratfit._record import Row, read_rows
+from ratfit._record import Row, merge
+from ratfit.report.check import check_row
 from ratfit.report.document import Block, Cell, Code, Column, Details, Document, Facts, Link, Paragraph, Section, Table
-from ratfit.report.measured import circumstances, count, epsilon_range, gamma, gamma_range, name_of
-from ratfit.report.problem_section import Measured, counts, problem_section
+from ratfit.report.headlines import counts
+from ratfit.report.measured import circumstances, count, epsilon_range, gamma_range, name_of
+from ratfit.report.problem_rows import ProblemRows
+from ratfit.report.problem_section import problem_section
 from ratfit.report.write import write_document
 
 EPS = """\
@@ -32,7 +35,9 @@ def run_report(paths: Sequence[str], out: str) -> int:
     Prints what was written, and returns the exit status. **Fails** with `RatfitError` for a file that is missing, is no
     record or holds no row, and for a folder that cannot be made.
     """
-    rows = [row for path in paths for row in _rows(path)]
+    rows = merge(paths)
+    if not rows:
+        raise RatfitError(f"{', '.join(paths)}: no row is in there; measure some with bench --out FILE")
     written = write_report(rows, _folder(out))
     print(f"wrote {written[0]} and {written[1]}")
     return 0
@@ -41,15 +46,6 @@ def run_report(paths: Sequence[str], out: str) -> int:
 def write_report(rows: Sequence[Row], folder: str | Path, name: str = "report") -> tuple[Path, ...]:
     """Writes the page of these rows as `name.html` and `name.md` with figures; returns the paths, pages first."""
     return write_document(document_of(rows), Path(folder), name)
-
-
-def _rows(path: str) -> list[Row]:
-    if not Path(path).exists():
-        raise RatfitError(f"{path}: there is no such file; name one that bench --out has written")
-    rows = read_rows(path)
-    if not rows:
-        raise RatfitError(f"{path} holds no row; measure some with bench --out {path}")
-    return rows
 
 
 def _folder(out: str) -> Path:
@@ -66,10 +62,12 @@ def document_of(rows: Sequence[Row]) -> Document:
 
     The rows are objects as in a line of a record file; equal rows count once. The numbers of one problem with different
     formulas (another choice of a free coefficient, say) are different sections. **Fails** with `RatfitError`
-    without rows.
+    without rows, and for rows that no ratfit has written.
     """
     if not rows:
         raise RatfitError("no rows: name a file that bench --out has written")
+    for row in rows:
+        check_row(row)
     problems = tuple(_problems(_once(rows)))
     title = f"{problems[0].title}: accuracy and speed" if len(problems) == 1 else "Fits: accuracy and speed"
     sections = tuple(problem_section(problem) for problem in problems)
@@ -84,7 +82,7 @@ def _once(rows: Sequence[Row]) -> list[Row]:
     return found
 
 
-def _problems(rows: Sequence[Row]) -> Iterator[Measured]:
+def _problems(rows: Sequence[Row]) -> Iterator[ProblemRows]:
     """Rows by problem and formula; a peer's row goes with the formula of the same problem that was seen last."""
     groups: dict[tuple[str, str | None], list[Row]] = {}
     last: dict[str, tuple[str, str | None]] = {}
@@ -99,34 +97,31 @@ def _problems(rows: Sequence[Row]) -> Iterator[Measured]:
     for number, ((problem, _), group) in enumerate(groups.items(), 1):
         titles[problem] = titles.get(problem, 0) + 1
         again = f" ({titles[problem]})" if titles[problem] > 1 else ""
-        yield Measured(number, problem + again, tuple(group))
+        yield ProblemRows(number, problem + again, tuple(group))
 
 
-def _lead(problems: Sequence[Measured]) -> Iterator[Block]:
+def _lead(problems: Sequence[ProblemRows]) -> Iterator[Block]:
     if len(problems) > 1:
         yield _overview(problems)
 
 
-def _overview(problems: Sequence[Measured]) -> Table:
+def _overview(problems: Sequence[ProblemRows]) -> Table:
     head = (
-        Column("problem"), Column("eps of"), Column("eps", numeric=True), Column("gamma on"),
-        Column("gamma", numeric=True), Column("operations"),
+        Column("problem"), Column("eps", numeric=True), Column("by"), Column("gamma", numeric=True), Column("on"),
+        Column("operations"),
     )  # fmt: skip
     return Table(head, tuple(_overview_row(problem) for problem in problems))
 
 
-def _overview_row(problem: Measured) -> tuple[Cell, ...]:
+def _overview_row(problem: ProblemRows) -> tuple[Cell, ...]:
     errors, times, fit = problem.with_errors(), problem.with_times(), problem.fit
     worst = max((row["epsilon"][problem.leading] for row in errors), default=None)
     return (
         Cell(Link(problem.title, problem.title)),
-        Cell(Code(problem.leading)),
         Cell(epsilon_range(errors, problem.leading), worst),
+        Cell(Code(problem.leading)),
+        Cell(gamma_range(times), min((row["gamma"] for row in times), default=None)),
         Cell(circumstances(times[0])[0] if times else "–"),
-        Cell(
-            gamma(times[0]) if len(times) == 1 else gamma_range(times),
-            min((row["gamma"] for row in times), default=None),
-        ),
         Cell(counts(fit["cost"]) if fit and fit["cost"] else "–"),
     )
 

@@ -60,7 +60,7 @@ def _worst(row: Row) -> Cell:
 
 def _per_sample(key: str, label: str) -> _Shown:
     def cell(row: Row) -> Cell:
-        seconds = row[key] and row[key] / row["samples"] * 1e9
+        seconds = row[key] / row["samples"] * 1e9 if row[key] is not None and row["samples"] > 0 else None
         return Cell(number(seconds), seconds)
 
     return _Shown(label, cell)

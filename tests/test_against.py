@@ -314,6 +314,13 @@ def test_a_pair_of_the_same_sample_comes_before_any_other():
     assert len(found) == 12 and not any(c.quantity == "row" for c in found)
 
 
+def test_the_same_sample_on_another_processor_comes_before_another_sample():
+    there = of_machine(processor="B 2")
+    found = compare(rows(there, replace(there, samples=10**6)), rows(RECORD))
+    assert [c.verdict for c in found if c.quantity.startswith("eps")] == ["same"] * 4
+    assert [c.row["samples"] for c in found if c.quantity == "row"] == [10**6]
+
+
 def test_whole_numbers_and_floats_are_the_same_values_of_parameters():
     assert "row" not in verdicts(replace(RECORD, parameters={"m": 1}), replace(RECORD, parameters={"m": 1.0}))
 

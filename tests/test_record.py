@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -324,6 +325,22 @@ def test_a_file_that_another_process_does_not_let_go_of_is_explained(tmp_path, m
             append_row(path, RECORD)
     append_row(path, RECORD)
     assert len(read_rows(path)) == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="it has no flock")
+def test_a_line_that_another_process_is_writing_is_not_taken_for_a_torn_one(tmp_path):
+    import fcntl
+
+    path = tmp_path / "rows.jsonl"
+    other = threading.Thread(target=append_row, args=(path, replace(RECORD, seed=1)))
+    with path.open("ab", buffering=0) as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        file.write(LINE[:100])
+        other.start()
+        time.sleep(0.1)
+        file.write(LINE[100:])
+    other.join()
+    assert [row["seed"] for row in read_rows(path)] == [0, 1]
 
 
 def test_what_a_killed_process_left_beside_a_file_is_swept_away(tmp_path):

@@ -49,8 +49,8 @@ def sampling(name: str, old: Row, new: Row) -> tuple[float | None, str]:
     A maximum, a quantile or a bias of another sample has no such limit, so None. Errors between 0 and max scatter by no
     more than sqrt(mean*(max - mean)), so two means of n and m errors differ by no more than chance, relative to the
     mean, of sqrt((max/mean - 1)*(1/n + 1/m)); for two rms that is sqrt(((max/rms)^2 - 1)*(1/n + 1/m))/2, by the same
-    for the squares. Maximum and mean are the larger ones of the two rows: a sample may have missed what is rare. Where the
-    definition divides by what was sampled too, the change of that divisor is let pass on top.
+    for the squares. Maximum and mean are the larger ones of the two rows: a sample may have missed what is rare. Where
+    the definition divides by what was sampled too, the change of that divisor is let pass on top.
     """
     family, _, kind = name.rpartition("_")
     if kind not in ("mean", "rms"):

@@ -6,34 +6,31 @@ import warnings
 from collections.abc import Sequence
 from fractions import Fraction
 
+import sympy as sp
+
 from ratfit._fit import Fit
 from ratfit._parse import RatfitError
 from ratfit.baselines.original import NODES, Original
-from ratfit.baselines.peer import Peer, degrees, peer
-from ratfit.baselines.written import Polynomial, composed, fraction, plus, rational, times
+from ratfit.baselines.peer import Peer, degrees, peer, stablest
+from ratfit.baselines.written import Polynomial, fraction, plus, times
 
 
 def aaa(fit: Fit, original: Original) -> Peer:
     """AAA (nakatsukasa2018) of degree [n/n], n the larger of the fit's degrees, from values at Chebyshev's nodes.
 
-    Its barycentric form divides 0 by 0 at each of its support points, which are samples in float32 too, and takes a
-    division for each. So it is multiplied out exactly, to one quotient of polynomials in the variable or in the
-    distance from the middle of the domain, whichever has the smaller error in float32. It may have poles on the
-    domain, and keeps none of the fit's kernel conditions.
+    Its barycentric form takes a division for each support point, and there it divides 0 by 0. So it is multiplied out
+    exactly, to one quotient of polynomials: in the variable, or in the distance from the middle or an end of the
+    domain, whichever has the smallest error in float32. It may have poles on the domain, and keeps none of the fit's
+    kernel conditions.
 
     **Fails** with `RatfitError` where the installed scipy has no AAA, or AAA finds nothing.
     """
     points, values, weights = _barycentric(original, max(1, *degrees(fit)))
-    middle = rational(original.middle)
-    factors = [[middle - point, Fraction(1)] for point in points]
+    factors = [[-point, Fraction(1)] for point in points]
     above = _combined(factors, [weight * value for weight, value in zip(weights, values, strict=True)])
     below = _combined(factors, weights)
-    x, back = original.variable, [-middle, Fraction(1)]
-    tried = [
-        fraction(composed(above, back), composed(below, back), x),
-        fraction(above, below, x - original.middle),
-    ]
-    formula = min(tried, key=original.float32_error)
+    centres = dict.fromkeys([sp.S.Zero, *original.centres])
+    formula = stablest([fraction(above, below, original.variable, centre) for centre in centres], original)
     degree = len(points) - 1
     return peer("aaa", fit, original, formula, f"[{degree}/{degree}] from values at {NODES} Chebyshev nodes")
 

@@ -11,7 +11,7 @@ import mpmath
 import numpy as np
 import sympy as sp
 
-from ratfit._lower import lower
+from ratfit._lower import Named, lower
 from ratfit._parse import RatfitError
 from ratfit._setting import setting
 from ratfit._study.curve import Number, numbers_of
@@ -97,10 +97,15 @@ class Original:
         error = np.max(np.abs(values.astype(float) - self.at_places)) / peak
         return float(error) if np.isfinite(error) else np.inf
 
-    def float32_error(self, formula: sp.Expr) -> float:
-        """The same of a formula in the variable, computed in float32: rounding takes part."""
-        places = self.places.astype(np.float32)
-        return self.peak_error(lower(formula, [self.variable])(places))
+    def float32_error(self, formula: sp.Expr, steps: Named = ()) -> float:
+        """The same of a formula in the variable and its steps, computed in float32: rounding takes part."""
+        return self.peak_error(lower(formula, [self.variable], steps=steps)(self.places.astype(np.float32)))
+
+    @cached_property
+    def centres(self) -> list[sp.Expr]:
+        """Where a polynomial may be centred: 0 if it is on the domain, the middle, the ends."""
+        low, high = self.ends
+        return list(dict.fromkeys([*([sp.S.Zero] if low <= 0 <= high else []), self.middle, low, high]))
 
 
 def original_of(fit: Any, parameters: Mapping[str, float | str] | None, reference: str | None) -> Original:

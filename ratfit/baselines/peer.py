@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import sympy as sp
 
 from ratfit._fit import Fit
 from ratfit._poles import poles
 from ratfit._problem import Problem
-from ratfit._schedule import Cost, schedule
+from ratfit._schedule import Cost, Schedule, schedule
 from ratfit.baselines.original import Original
+
+WORSE = 4
+"""How many times its error as written an arrangement may have before another way of writing is tried."""
 
 
 @dataclass(frozen=True)
 class Peer:
     """What a fit must beat, at the values of the parameters that it was made for: it is measured like a fit.
 
-    `formula` is in the variable alone. `about` says in a line what it is: its size, how it was made, and the poles on
-    the domain, where it has any. `cost` is that of its best arrangement; a table look-up counts as one function.
+    `formula` is in the variable alone. `about` says in a line what it is: its size, how it was made, its operations,
+    and its poles on the domain, where it has any. `cost` is that of its best arrangement; a table look-up counts as
+    one function.
     """
 
     name: str
@@ -38,11 +43,34 @@ class Unavailable:
 
 
 def peer(name: str, fit: Fit, original: Original, formula: sp.Expr, about: str) -> Peer:
-    """The record of a peer: its cost is counted, and the poles that it has on the domain are told."""
-    ranges = {original.variable: original.ends}
+    """The record of a peer: its operations are counted, and the poles that it has on the domain are told."""
+    cost = _arranged(formula, original).cost
+    counted = [f"{count} {kind}" for kind, count in cost.as_dict().items() if kind != "other" and count]
     found = pole_places(formula, original)
-    told = f"; infinite inside the domain, at {', '.join(found)}" if found else ""
-    return Peer(name, fit.problem, formula, about + told, schedule(formula, original.variable, ranges).cost)
+    told = [f"infinite inside the domain, at {', '.join(found)}"] if found else []
+    return Peer(name, fit.problem, formula, "; ".join([about, *([", ".join(counted)] if counted else []), *told]), cost)
+
+
+def stablest(formulas: Sequence[sp.Expr], original: Original) -> sp.Expr:
+    """Of several ways to write one function, the one with the smallest error in float32; of equal ones the first.
+
+    It is the schedule of a formula that is measured, and that may round worse than the formula as written: such a way
+    of writing is passed over.
+    """
+    errors = [original.float32_error(formula) for formula in formulas]
+    arranged: list[float] = []
+    ranked = sorted(range(len(formulas)), key=errors.__getitem__)
+    for place in ranked:
+        found = _arranged(formulas[place], original)
+        arranged.append(original.float32_error(found.result, (*found.constants, *found.steps)))
+        if arranged[-1] <= WORSE * errors[place]:
+            return formulas[place]
+    return formulas[ranked[min(range(len(ranked)), key=arranged.__getitem__)]]
+
+
+@lru_cache(maxsize=100)
+def _arranged(formula: sp.Expr, original: Original) -> Schedule:
+    return schedule(formula, original.variable, {original.variable: original.ends})
 
 
 def pole_places(formula: sp.Expr, original: Original) -> list[str]:
@@ -64,6 +92,3 @@ def degrees(fit: Fit) -> tuple[int, int]:
     shape = fit.problem.form.shape(x, ())
     count = len(shape.unknowns) - shape.homogeneous
     return count - 1 - (count - 1) // 2, (count - 1) // 2
-
-
-Values = Mapping[str, float | str]

@@ -8,8 +8,8 @@ import numpy as np
 
 from ratfit._fit import Fit
 from ratfit.baselines.original import NODES, Original
-from ratfit.baselines.peer import Peer, peer
-from ratfit.baselines.written import Polynomial, composed, horner, plus, rational, times
+from ratfit.baselines.peer import Peer, peer, stablest
+from ratfit.baselines.written import Polynomial, about, horner, plus, rational, times
 
 MOST = 40
 """The highest degree tried: beyond it the coefficients themselves are lost in float32."""
@@ -24,12 +24,13 @@ def polynomial(fit: Fit, original: Original) -> Peer:
     """
     weight = fit.cost.weight
     far, near = (min(weight // 2, MOST), min(max(weight - 1, 0) // 2, MOST))
-    middle = original.middle
-    tried = [
-        (horner(composed(least_squares(original, far), [-rational(middle), Fraction(1)]), original.variable), far),
-        (horner(least_squares(original, near), original.variable - middle), near),
-    ]
-    formula, degree = min(tried, key=lambda entry: original.float32_error(entry[0]))
+    x, middle = original.variable, original.middle
+    known = {
+        horner(about(-middle, least_squares(original, far)), x): far,
+        horner(least_squares(original, near), x - middle): near,
+    }
+    formula = stablest(list(known), original)
+    degree = known[formula]
     return peer("polynomial", fit, original, formula, f"degree {degree}, least squares at {NODES} Chebyshev nodes")
 
 

@@ -29,7 +29,13 @@ def plus(first: Polynomial, second: Polynomial) -> list[Fraction]:
 
 def composed(outer: Polynomial, inner: Polynomial) -> list[Fraction]:
     """The outer polynomial of the inner one, by Horner's rule."""
-    return reduce(lambda value, coefficient: plus(times(value, inner), [coefficient]), reversed(outer), [Fraction(0)])
+    *rest, leading = outer
+    return reduce(lambda value, coefficient: plus(times(value, inner), [coefficient]), reversed(rest), [leading])
+
+
+def about(centre: sp.Expr, polynomial: Polynomial) -> list[Fraction]:
+    """A polynomial of the variable as one of the distance from a centre."""
+    return composed(polynomial, [rational(centre), Fraction(1)])
 
 
 def horner(polynomial: Polynomial, x: sp.Expr) -> sp.Expr:
@@ -40,11 +46,12 @@ def horner(polynomial: Polynomial, x: sp.Expr) -> sp.Expr:
     return value
 
 
-def fraction(above: Polynomial, below: Polynomial, x: sp.Expr) -> sp.Expr:
-    """A quotient of two polynomials, scaled so that the largest coefficient below the line is 1."""
-    scale = max(below, key=abs)
-    upper, lower = ([coefficient / scale for coefficient in polynomial] for polynomial in (above, below))
-    return horner(upper, x) / horner(lower, x)
+def fraction(above: Polynomial, below: Polynomial, x: sp.Symbol, centre: sp.Expr) -> sp.Expr:
+    """A quotient of two polynomials in the distance from a centre; below the line the largest coefficient is 1."""
+    moved = [about(centre, polynomial) for polynomial in (above, below)]
+    scale = max(moved[1], key=abs)
+    upper, lower = (horner([coefficient / scale for coefficient in part], x - centre) for part in moved)
+    return upper / lower
 
 
 def rational(number: sp.Expr) -> Fraction:

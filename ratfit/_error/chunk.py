@@ -1,0 +1,201 @@
+"""One chunk of samples on a device: drawn, evaluated, and added up, all in the cache.
+
+The samples of a chunk pass through in rows. Each lane of a row keeps running totals of its own, sums with the rounding
+error of every addition beside them, so that no order of evaluation is left to the compiler: a chunk's totals are the
+same numbers whichever device makes them.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+from ratfit._kernel import Program, kernel
+from ratfit._sampling import drawing
+
+CHUNK = 2**18
+"""Samples that are added up together: fixed, because the totals of a chunk depend on it in their last bits."""
+
+LANES = 2**12
+"""Samples in a row, whose arrays stay in the innermost caches; fixed for the same reason."""
+
+ROWS, GROUP = CHUNK // LANES, 8
+"""Rows of a chunk; and those of them that a lane adds up plainly before it adds their sum with its rounding error."""
+
+# What is counted, added up, and looked for the greatest and the least of.
+COUNTS = ("finite", "nonzero", "nan_fit", "inf_fit", "nan_exact", "inf_exact")
+SUMS = ("error", "absolute", "square", "relative_signed", "relative", "relative_square", "size", "ulp")
+EXTREMES = ("peak", "highest", "lowest")  # of |exact| and of exact
+WORST = ("absolute", "relative", "ulp")
+
+BINS_AN_OCTAVE = 64
+LEAST_EXPONENT, OCTAVES = -192, 256
+BINS = OCTAVES * BINS_AN_OCTAVE
+"""Bins of the histograms that quantiles come from: 64 between 2**n and 2**(n + 1), n from -192 to 63."""
+
+
+@dataclass(frozen=True)
+class Pass:
+    """What is compiled: the programs, the protocol and the dtype, but no value of a parameter, seed or domain."""
+
+    fit: Program
+    exact: Program
+    varying: tuple[Any, ...]
+    sampling: str
+    dtype: str
+    quantiles: bool
+
+
+def chunk_totals(what: Pass, start: Any, samples: Any, seed: Any, ends: Any, constants: Any) -> dict[str, Any]:
+    """The totals of the samples `start` to `start + CHUNK`, as far as they are below `samples`; to be traced by JAX.
+
+    Counts are integers, a sum is the pair of its high and low part, the worst of each kind a pair of its value and its
+    counter; `absolute_bins` and `relative_bins` are the histograms, if asked for.
+    """
+    import jax
+    import jax.numpy as jnp
+
+    lane = jnp.arange(LANES, dtype=jnp.uint64)
+
+    def evaluated(number: Any) -> tuple[Any, Any]:
+        counters = start + number * LANES + lane
+        points = drawing(what.sampling, what.dtype)(seed, counters, ends)
+        fit = kernel(what.fit, what.varying).function(*points, *constants[0])
+        exact = kernel(what.exact, what.varying).function(*(p.astype(jnp.float64) for p in points), *constants[1])
+        return fit, exact
+
+    def add(number: Any, carried: dict[str, Any]) -> dict[str, Any]:
+        inside = start + number.astype(jnp.uint64) * LANES + lane < samples
+        return _added(carried, _errors(fits[number], exacts[number], inside, what.dtype), number)
+
+    def add_group(group: Any, carried: tuple[dict[str, Any], dict[str, Any]]) -> tuple[dict[str, Any], dict[str, Any]]:
+        rest, sums = carried
+        rest = jax.lax.fori_loop(group * GROUP, (group + 1) * GROUP, add, rest | {"sums": _zeros()})
+        return rest, {name: _two_sum(sums[name], value) for name, value in rest.pop("sums").items()}
+
+    # Two loops, because the end of a loop is what XLA respects: in one, each sum computes the functions for itself.
+    fits, exacts = jax.lax.map(evaluated, jnp.arange(ROWS, dtype=jnp.uint64))
+    sums = {name: (value, value) for name, value in _zeros().items()}
+    rest, sums = jax.lax.fori_loop(0, ROWS // GROUP, add_group, (_empty(what.quantiles), sums))
+    return _folded(rest, sums, start)
+
+
+def _zeros() -> dict[str, Any]:
+    import jax.numpy as jnp
+
+    return {name: jnp.zeros(LANES) for name in SUMS}
+
+
+def _empty(quantiles: bool) -> dict[str, Any]:
+    import jax.numpy as jnp
+
+    nothing: dict[str, Any] = {"counts": jnp.zeros(LANES, jnp.int64)}
+    nothing |= {"peak": jnp.zeros(LANES), "highest": jnp.full(LANES, -jnp.inf), "lowest": jnp.full(LANES, jnp.inf)}
+    # -1, not 0: a sample that is left out is never the worst one, not even where every error is 0.
+    nothing |= {f"worst_{name}": (jnp.full(LANES, -1.0), jnp.zeros(LANES, jnp.int64)) for name in WORST}
+    bins = {f"{name}_bins": jnp.zeros(BINS, jnp.int64) for name in ("absolute", "relative")}
+    return nothing | (bins if quantiles else {})
+
+
+def _errors(fit: Any, exact: Any, inside: Any, dtype: str) -> dict[str, Any]:
+    """The errors of a row, sample by sample; 0 where one is not defined."""
+    import jax.numpy as jnp
+
+    fitted = fit.astype(jnp.float64)
+    known = inside & jnp.isfinite(exact)
+    finite = known & jnp.isfinite(fitted)
+    nonzero = finite & (exact != 0)
+    size = jnp.where(known, jnp.abs(exact), 0)
+    error = jnp.where(finite, fitted - exact, 0)
+    relative = jnp.where(nonzero, error / jnp.where(nonzero, exact, 1), 0)
+    kinds = (finite, nonzero, jnp.isnan(fitted), jnp.isinf(fitted), jnp.isnan(exact), jnp.isinf(exact))
+    return {
+        "finite": finite, "nonzero": nonzero, "known": known, "exact": exact,
+        # Each count has a byte of its own: a lane sees 64 samples of a chunk.
+        "counts": sum((inside & kind).astype(jnp.int64) << (8 * place) for place, kind in enumerate(kinds)),
+        "size": size, "error": error, "absolute": jnp.abs(error), "square": error * error,
+        "relative_signed": relative, "relative": jnp.abs(relative), "relative_square": relative * relative,
+        "ulp": jnp.abs(error) * _per_ulp(size, dtype),
+    }  # fmt: skip
+
+
+@functools.cache
+def _format(dtype: str) -> tuple[int, int]:
+    """The bits of the fraction and the least exponent of a dtype's normal numbers."""
+    import ml_dtypes
+    import numpy as np
+
+    about = ml_dtypes.finfo(np.dtype(dtype))
+    return int(about.nmant), int(about.minexp)
+
+
+def _per_ulp(size: Any, dtype: str) -> Any:
+    """How many units in the last place of `dtype` make 1, at numbers of this size: a power of two."""
+    import jax
+    import jax.numpy as jnp
+
+    fraction, least = _format(dtype)
+    bits = jax.lax.bitcast_convert_type(size, jnp.uint64)
+    exponent = jnp.maximum((bits >> 52).astype(jnp.int64) - 1023, least)
+    # Below 2**-971 the factor would be beyond 2**1023: float64 alone reaches that, and its errors there are denormal.
+    power = jnp.minimum(fraction - exponent, 1023)
+    return jax.lax.bitcast_convert_type(((power + 1023).astype(jnp.uint64)) << 52, jnp.float64)
+
+
+def _added(carried: dict[str, Any], row: dict[str, Any], number: Any) -> dict[str, Any]:
+    import jax.numpy as jnp
+
+    new = {
+        "counts": carried["counts"] + row["counts"],
+        "sums": {name: value + row[name] for name, value in carried["sums"].items()},
+        "peak": jnp.maximum(carried["peak"], row["size"]),
+        "highest": jnp.maximum(carried["highest"], jnp.where(row["known"], row["exact"], -jnp.inf)),
+        "lowest": jnp.minimum(carried["lowest"], jnp.where(row["known"], row["exact"], jnp.inf)),
+    }
+    for name in WORST:
+        value, place = carried[f"worst_{name}"]
+        found = jnp.where(row["nonzero" if name == "relative" else "finite"], row[name], -1.0)
+        new[f"worst_{name}"] = jnp.maximum(value, found), jnp.where(found > value, number, place)
+    for name in ("absolute", "relative"):
+        if f"{name}_bins" in carried:
+            counted = row["nonzero" if name == "relative" else "finite"].astype(jnp.int64)
+            new[f"{name}_bins"] = carried[f"{name}_bins"].at[_bin(row[name])].add(counted)
+    return new
+
+
+def _two_sum(total: tuple[Any, Any], value: Any) -> tuple[Any, Any]:
+    """A sum and what its rounding lost (Knuth's two-sum, without regard to which of the two is greater)."""
+    high, low = total
+    new = high + value
+    added = new - high
+    return new, low + ((high - (new - added)) + (value - added))
+
+
+def _bin(error: Any) -> Any:
+    """The bin of an error: the exponent and the first six bits of the fraction of its float64."""
+    import jax
+    import jax.numpy as jnp
+
+    bits = jax.lax.bitcast_convert_type(error, jnp.uint64) >> (52 - 6)
+    return jnp.clip(bits.astype(jnp.int32) - (1023 + LEAST_EXPONENT) * BINS_AN_OCTAVE, 0, BINS - 1)
+
+
+def _folded(rest: dict[str, Any], sums: dict[str, tuple[Any, Any]], start: Any) -> dict[str, Any]:
+    """The lanes of a chunk as one."""
+    import jax.numpy as jnp
+
+    found = {name: jnp.sum((rest["counts"] >> (8 * place)) & 255) for place, name in enumerate(COUNTS)}
+    high, low = (jnp.stack([sums[name][part] for name in SUMS]) for part in (0, 1))
+    while high.shape[1] > 1:
+        half = high.shape[1] // 2
+        high, low = _two_sum((high[:, :half], low[:, :half] + low[:, half:]), high[:, half:])
+    found["sums"] = jnp.concatenate([high, low], axis=1)
+    found["extremes"] = jnp.stack([jnp.max(rest["peak"]), jnp.max(rest["highest"]), jnp.min(rest["lowest"])])
+    for name in WORST:
+        value, number = rest[f"worst_{name}"]
+        counters = start + number.astype(jnp.uint64) * LANES + jnp.arange(LANES, dtype=jnp.uint64)
+        most = jnp.max(value)
+        first = jnp.min(jnp.where(value == most, counters, jnp.uint64(2**64 - 1)))
+        found[f"worst_{name}"], found[f"counter_{name}"] = most, first
+    return found | {name: part for name, part in rest.items() if name.endswith("_bins")}

@@ -1,0 +1,147 @@
+"""The verb: every definition of eps of a fit, at the same points, in one pass.
+
+The fit is computed in the dtype under test, the exact function in float64, at the very points, after they were rounded
+to that dtype. Memory is the same for a thousand samples and for a million million.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from ratfit._error.bits import KeptValue, kept_values
+from ratfit._error.chunk import COUNTS, WORST
+from ratfit._error.curve import error_curve
+from ratfit._error.definitions import TABLE
+from ratfit._error.poles import poles_of
+from ratfit._error.stream import Watch, stream
+from ratfit._error.totals import Totals
+from ratfit._kernel import precision
+from ratfit._sampling import bounds, check_protocol, count, drawing, resolve
+from ratfit._setting import Setting, Value, setting
+
+
+@dataclass(frozen=True)
+class ErrorMeasurement:
+    """The errors of a fit under every definition, with all that it takes to measure them again.
+
+    `epsilon` is None where a definition divides by 0 or has no finite value, and everywhere when no sample is finite;
+    with `poles` on the domain only the quantiles are left. `nonfinite` counts the samples left out because the exact
+    value or the fit is inf or nan, `counts` tells these apart. `worst` says `at` which value of the variable the error
+    of its `definition` is reached: `relative_max`, or `absolute_max` where the exact function is 0 throughout; `places`
+    says the same of each maximum, with the values of parameters that were drawn at random. `kept` says, of an
+    exhaustive measurement, which value conditions hold bit for bit; `curve` is the error over the domain, for pictures.
+    """
+
+    epsilon: dict[str, float | None]
+    worst: dict[str, Any]
+    nonfinite: int
+    samples: int
+    sampling: str
+    seed: int
+    dtype: str
+    parameters: dict[str, Any]
+    reference: str | None
+    counts: dict[str, int] = field(default_factory=dict)
+    places: dict[str, dict[str, Any]] = field(default_factory=dict)
+    poles: tuple[float, ...] = ()
+    kept: tuple[KeptValue, ...] = ()
+    curve: dict[str, Any] | None = None
+    note: str = ""
+
+
+def measure_error(
+    fit: Any,
+    *,
+    samples: int | None = 1_000_000,
+    sampling: str = "uniform",
+    seed: int = 0,
+    dtype: str = "float32",
+    parameters: Mapping[str, Value] | None = None,
+    reference: str | None = None,
+    quantiles: bool = True,
+    watch: Watch | None = None,
+) -> ErrorMeasurement:
+    """Measure how far a fit is from the exact function, under every definition of eps.
+
+    **Arguments:**
+
+    - `fit`: a `Fit` without free coefficients, or anything with a `problem` and a `formula`.
+    - `samples`, `sampling`, `seed`: how many points, by which protocol, from which seed; `exhaustive` takes every
+      number of the dtype in the closed domain, and `samples=None`.
+    - `dtype`: what the fit is computed in, `"float16"`, `"float32"` or `"float64"`; the exact function in float64.
+    - `parameters`: the values of the problem's parameters by name, or `"random"`: drawn anew for every sample.
+    - `reference`: the name of the problem's reference to compare with, in place of the target.
+    - `quantiles`: whether the histograms are kept that quantiles come from.
+    - `watch`: who is told of progress, and where the state of a long pass is kept.
+
+    **Returns:** the same numbers to the last bit for the same arguments on the same kind of device, on however many
+    devices and in however many processes.
+
+    **Fails** with `RatfitError` as `setting` and `check_protocol` do. See also: `DEFINITIONS`, `measure_speed`.
+    """
+    check_protocol(sampling, samples, seed, dtype)
+    place = setting(fit, parameters, reference)
+    sampling = resolve(sampling, place.variable.name, place.low, place.high, dtype)
+    if samples is None:
+        samples = count(place.low, place.high, dtype)
+    totals = stream(place, samples, sampling, seed, dtype, quantiles, watch or Watch())
+    infinite = poles_of(place)
+    epsilon = {name: each.value(totals) for name, each in TABLE.items() if quantiles or "_q" not in name}
+    if infinite:
+        epsilon = {name: value if "_q" in name else None for name, value in epsilon.items()}
+    places = _places(totals, place, sampling, seed, dtype)
+    kept = kept_values(fit, place, dtype) if sampling == "exhaustive" else ()
+    return ErrorMeasurement(
+        epsilon=epsilon,
+        worst=_worst(places),
+        nonfinite=samples - totals.counts["finite"],
+        samples=samples,
+        sampling=sampling,
+        seed=seed,
+        dtype=dtype,
+        parameters=place.parameters,
+        reference=reference,
+        counts={name: totals.counts[name] for name in COUNTS if name not in ("finite", "nonzero")},
+        places=places,
+        poles=infinite,
+        kept=kept,
+        curve=error_curve(place, dtype),
+        note="; ".join([*_notes(totals, infinite, place, dtype), *map(str, kept)]),
+    )
+
+
+def _places(totals: Totals, place: Setting, sampling: str, seed: int, dtype: str) -> dict[str, dict[str, Any]]:
+    """Where each maximum is: the sample is drawn again by its counter."""
+    found = {}
+    for name in WORST:
+        value, counter = totals.worst[name]
+        if value >= 0:
+            at, *drawn = _sample(place, sampling, seed, counter, dtype)
+            found[f"{name}_max"] = {"at": at} | {s.name: v for s, v in zip(place.ranges, drawn, strict=True)}
+    return found
+
+
+def _sample(place: Setting, sampling: str, seed: int, counter: int, dtype: str) -> list[float]:
+    import numpy as np
+
+    with precision("float64"):
+        drawn = drawing(sampling, dtype)(np.uint64(seed), np.array([counter], np.uint64), bounds(place, dtype))
+    return [float(each[0]) for each in drawn]
+
+
+def _worst(places: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    definition = "relative_max" if "relative_max" in places else "absolute_max"
+    return {"definition": definition, **places.get(definition, {"at": None})}
+
+
+def _notes(totals: Totals, infinite: tuple[float, ...], place: Setting, dtype: str) -> Iterator[str]:
+    if infinite:
+        where = ", ".join(f"{at:.6g}" for at in infinite[:3])
+        yield f"pole of the fit at {place.variable} = {where}: no mean or maximum has a meaning"
+    if not totals.counts["finite"]:
+        yield f"no sample is finite in {dtype}: its constants or values leave that type's range"
+    counted = ", ".join(f"{totals.counts[n]} {n.replace('_', ' of the ')}" for n in COUNTS[2:] if totals.counts[n])
+    if counted:
+        yield f"left out: {counted}"

@@ -7,7 +7,7 @@ from typing import Any
 
 from ratfit._fit import Fit
 from ratfit._parse import RatfitError
-from ratfit._setting import RANDOM
+from ratfit._setting import setting
 from ratfit.baselines.aaa import aaa
 from ratfit.baselines.original import Original, original_of
 from ratfit.baselines.pade import pade
@@ -39,21 +39,14 @@ def peers(
 
     **Fails** with `RatfitError` as `setting` does, for what the fit could not be measured with either.
     """
-    reason = _reason(fit, parameters or {})
-    if reason:
-        return [Unavailable(name, reason) for name in PEERS]
-    original = original_of(fit, parameters, reference)
-    return [_made(name, fit, original) for name in PEERS]
-
-
-def _reason(fit: Fit, parameters: Mapping[str, Any]) -> str:
-    """Why no peer can be made, whatever its kind."""
-    moving = sorted(name for name, value in parameters.items() if value == RANDOM)
-    if moving:
-        return f"a peer is made at one value of each parameter: give {', '.join(moving)} a number"
     if any(end.is_infinite for end in fit.problem.domain):
-        return "the domain is infinite: a peer is made on finite ends"
-    return ""
+        return [Unavailable(name, "the domain is infinite, and a peer is made on finite ends") for name in PEERS]
+    place = setting(fit, parameters, reference)
+    try:
+        original = original_of(place)
+    except RatfitError as reason:
+        return [Unavailable(name, str(reason)) for name in PEERS]
+    return [_made(name, fit, original) for name in PEERS]
 
 
 def _made(name: str, fit: Fit, original: Original) -> Peer | Unavailable:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import mpmath
 import numpy as np
@@ -13,7 +11,7 @@ import sympy as sp
 
 from ratfit._lower import Named, lower
 from ratfit._parse import RatfitError
-from ratfit._setting import setting
+from ratfit._setting import Setting
 from ratfit._study.curve import Number, numbers_of
 from ratfit._target import exact
 
@@ -108,8 +106,10 @@ class Original:
         return list(dict.fromkeys([*([sp.S.Zero] if low <= 0 <= high else []), self.middle, low, high]))
 
 
-def original_of(fit: Any, parameters: Mapping[str, float | str] | None, reference: str | None) -> Original:
-    """The exact function that `setting` says a fit stands for. **Fails** with `RatfitError` as `setting` does."""
-    place = setting(fit, parameters, reference)
+def original_of(place: Setting) -> Original:
+    """The exact function of a setting. **Fails** with `RatfitError` where a parameter is random: it is no one function."""
+    if place.ranges:
+        moving = ", ".join(symbol.name for symbol in place.ranges)
+        raise RatfitError(f"a peer is made at one value of each parameter: give {moving} a number")
     known = {symbol: exact(value) for symbol, value in place.values.items()}
     return Original(place.exact.xreplace(known), place.variable, place.low, place.high)

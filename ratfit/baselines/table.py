@@ -9,6 +9,7 @@ import numpy as np
 from ratfit._fit import Fit
 from ratfit._lower import Entries, Lookup, lower
 from ratfit._parse import RatfitError
+from ratfit._setting import setting
 from ratfit.baselines.original import Original, original_of
 from ratfit.baselines.peer import Peer, Unavailable, peer
 
@@ -36,12 +37,14 @@ def table_of_equal_error(
 ) -> Peer | Unavailable:
     """The table with the smallest power of two of entries whose largest error is not above the fit's.
 
-    Both errors are looked at in float64, at 2048 places of the domain. **Fails** with `RatfitError` as `setting` does.
+    Both errors are looked at in float64, at 2048 places of the domain.
+
+    **Fails** with `RatfitError` as `setting` does, and for a random parameter.
     """
-    original = original_of(fit, parameters, reference)
-    symbols = sorted(fit.formula.free_symbols - {original.variable}, key=lambda symbol: symbol.name)
-    given = [float((parameters or {})[symbol.name]) for symbol in symbols]
-    target = original.peak_error(lower(fit.formula, (original.variable, *symbols))(original.places, *given))
+    place = setting(fit, parameters, reference)
+    original = original_of(place)
+    function = lower(place.formula, (place.variable, *place.values))
+    target = original.peak_error(function(original.places, *place.values.values()))
     entries = 2
     try:
         while entries <= MOST:

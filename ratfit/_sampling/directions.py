@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ratfit._sampling.portable import product, quarter_cosine, quarter_sine
+from ratfit._sampling.portable import product, quarter_cosine, quarter_sine, root
 
 Coordinate = Callable[[int], Any]
 
@@ -58,11 +58,9 @@ def _length(coordinate: Coordinate) -> Any:
 
     |V + V'|^2 = (v + v')^2 + (s - s')^2 + 4 s s' cos(angle/2)^2 with the sines s, s': a sum without cancellation.
     """
-    import jax.numpy as jnp
-
     height, other = coordinate(0), coordinate(1)
-    sine, other_sine = (jnp.sqrt(product(1 - z, 1 + z)) for z in (height, other))
+    sine, other_sine = (root(product(1 - z, 1 + z)) for z in (height, other))
     half = quarter_cosine(coordinate(2))
     together, apart = height + other, sine - other_sine
     across = product(product(sine, other_sine), product(half, half))
-    return jnp.sqrt(product(together, together) + product(apart, apart) + 4 * across)
+    return root(product(together, together) + product(apart, apart) + 4 * across)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import mpmath
 
 from ratfit._parse import RatfitError
-from ratfit._sampling.exhaustive import place_of
+from ratfit._sampling.exhaustive import nearest_number, place_of
 from ratfit._setting import Setting
 
 
@@ -50,19 +50,22 @@ def ends(low: float, high: float, dtype: str) -> Any:
 
 
 def _inside(low: float, high: float, dtype: str) -> tuple[float, float]:
-    """The numbers next to the ends, on the inside; no subnormal ones, which XLA takes for 0, and so maybe for an end."""
+    """The numbers next to the ends, inside; no subnormal ones, which XLA takes for 0 and so perhaps for an end."""
     import numpy as np
 
-    kind, tiny = np.dtype(dtype).type, float(np.finfo(dtype).smallest_normal)
-    with np.errstate(over="ignore"):
-        first, last = kind(low), kind(high)
-        first = float(first if first > low else np.nextafter(first, kind(np.inf)))
-        last = float(last if last < high else np.nextafter(last, kind(-np.inf)))
+    tiny = float(np.finfo(dtype).smallest_normal)
+    first, last = (nearest_number(end, dtype) for end in (low, high))
+    # Compared as float64: NumPy would round a Python float to the narrower dtype first.
+    if float(first) <= low:
+        first = np.nextafter(first, first.dtype.type(math.inf))
+    if float(last) >= high:
+        last = np.nextafter(last, last.dtype.type(-math.inf))
+    first, last = float(first), float(last)
     if 0 < abs(first) < tiny:
         first = tiny if first > 0 else 0.0
     if 0 < abs(last) < tiny:
         last = -tiny if last < 0 else 0.0
-    return first + 0.0, last + 0.0  # without the sign of -0.0
+    return first + 0.0, last + 0.0  # -0.0 becomes 0.0
 
 
 def _places(low: float, high: float, dtype: str) -> tuple[float, float]:

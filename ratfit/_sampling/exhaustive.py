@@ -41,16 +41,21 @@ def place_of(end: float, dtype: str, upwards: bool) -> int:
     """The place of the first finite number of the dtype at or beyond an end, upwards or downwards; a 0 means both."""
     import numpy as np
 
-    kind = np.dtype(dtype).type
-    towards = kind(np.inf if upwards else -np.inf)
-    with np.errstate(over="ignore"):
-        number = kind(end)
-    if (number < end) if upwards else (number > end):
-        number = np.nextafter(number, towards)
+    number = nearest_number(end, dtype)
+    if (float(number) < end) if upwards else (float(number) > end):
+        number = np.nextafter(number, number.dtype.type(math.inf if upwards else -math.inf))
     bits = int(abs(number).view(f"u{number.itemsize}"))
     if number == 0:
         return -1 if upwards else 0
     return bits if number > 0 else -1 - bits
+
+
+def nearest_number(value: float, dtype: str) -> Any:
+    """The number of the dtype nearest to a value, as a NumPy scalar: infinite beyond the greatest."""
+    import numpy as np
+
+    with np.errstate(over="ignore"):
+        return np.dtype(dtype).type(value)
 
 
 def number_at(places: Any, dtype: str) -> Any:

@@ -1,7 +1,8 @@
-"""Float64 arithmetic that every device rounds alike: sums, square roots and quotients as IEEE has them, and these.
+"""Float64 arithmetic that every device and every kernel rounds alike.
 
-A compiler may round `a*b + c` once or twice, and the cosines of two libraries differ in their last digits: a point
-that rests on either is no longer a function of the seed and the counter alone.
+A compiler rounds `a*b + c` once or twice, makes `a/sqrt(b)` a product with a reciprocal root, and takes cosines from
+libraries that differ in their last digits: a point that rests on any of these is no longer a function of the seed and
+the counter alone. Sums and quotients are safe; products and roots that sums and quotients follow are settled here.
 """
 
 from __future__ import annotations
@@ -26,15 +27,23 @@ _QUARTER = (
 
 
 def product(left: Any, right: Any) -> Any:
-    """`left*right`, rounded, with the last bit of its significand cleared.
+    """`left*right`, settled."""
+    return _settled(left * right)
 
-    The cleared bit keeps a compiler from fusing the product with a sum that follows it, at the price of one unit in the
-    last place.
-    """
+
+def root(square: Any) -> Any:
+    """The square root, settled."""
+    import jax.numpy as jnp
+
+    return _settled(jnp.sqrt(square))
+
+
+def _settled(number: Any) -> Any:
+    """The number with the last bit of its significand cleared: what a compiler cannot merge with what follows."""
     import jax
     import jax.numpy as jnp
 
-    bits = jax.lax.bitcast_convert_type(left * right, jnp.uint64)
+    bits = jax.lax.bitcast_convert_type(number, jnp.uint64)
     return jax.lax.bitcast_convert_type(bits & jnp.uint64(2**64 - 2), jnp.float64)
 
 

@@ -18,7 +18,7 @@ from ratfit._sampling.directions import (
     plane_v,
 )
 from ratfit._sampling.ends import Ends
-from ratfit._sampling.portable import product, quarter_sine
+from ratfit._sampling.portable import product, quarter_sine, root
 from ratfit._sampling.sobol import sobol_fractions
 
 PROTOCOLS: Mapping[str, str] = {
@@ -57,11 +57,9 @@ def _angle(coordinate: Coordinate, ends: Ends) -> Any:
 
 def _cosine(coordinate: Coordinate, ends: Ends) -> Any:
     """sqrt(low^2 + (high^2 - low^2) xi), in units of `high`, whose square may be too small for a number."""
-    import jax.numpy as jnp
-
     ratio = ends.low / ends.high
     square = product(ratio, ratio) + product(product(1 - ratio, 1 + ratio), coordinate(0))
-    return product(ends.high, jnp.sqrt(square))
+    return product(ends.high, root(square))
 
 
 def _pair(quantity: Callable[[Coordinate], Any]) -> Carrier:

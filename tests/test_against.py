@@ -113,6 +113,7 @@ def test_another_formula_is_compared_and_told():
 @pytest.mark.parametrize(
     ("definition", "old", "new", "verdict"),
     [
+        ("absolute_q99", 0.01, 0.01 * 1.015, "same"), ("absolute_q99", 0.01, 0.0103, "worse"),
         ("peak_mean", 0.01, 0.01 * 1.0005, "same"), ("peak_mean", 0.01, 0.0102, "worse"),
         ("peak_mean", 0.0102, 0.01, "better"), ("peak_mean", 0.0, 7 * 2**-23, "same"),
         ("peak_mean", 0.0, 9 * 2**-23, "worse"), ("ulp_max", 1.0, 8.5, "same"), ("ulp_max", 1.0, 10.0, "worse"),
@@ -266,6 +267,18 @@ def test_gamma_changes_where_its_intervals_lie_apart(low, gamma, high, verdict):
 def test_gamma_says_what_it_was_compared_on(new, verdict, text):
     found = change_of("gamma", replace(new, gamma=2.0, gamma_low=1.9, gamma_high=2.1))
     assert found.verdict == verdict and text in found.why
+
+
+@pytest.mark.parametrize(
+    ("floor", "gamma", "verdict"),
+    [
+        (1.4e-3, 3.0, "incomparable"),  # the floor took 40 % more, gamma lost 33 %
+        (0.7e-3, 3.0, "incomparable"), (1.2e-3, 3.0, "worse"), (0.9e-3, 5.0, "better"), (None, 3.0, "worse"),
+    ],
+)  # fmt: skip
+def test_a_machine_that_was_not_itself_changes_no_gamma(floor, gamma, verdict):
+    new = replace(RECORD, gamma=gamma, gamma_low=gamma - 0.01, gamma_high=gamma + 0.01, floor_s=floor)
+    assert verdicts(new)["gamma"] == verdict
 
 
 def test_a_row_without_speed_has_no_gamma_to_compare():

@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ratfit._record.gamma import gamma_verdict
 from ratfit._record.noise import PRECISION, SIGMAS, elsewhere, sampling
+from ratfit._record.pairs import identity, remarks, take_pairs, where
 from ratfit._record.row import Row
-
-Key = tuple[Any, ...]
-
-IDENTITY = ("name", "parameters", "samples", "sampling", "dtype", "backend", "regime", "seed")
-"""The keys in which rows of the same measurement agree."""
-
-GAMMA = 0.05
-"""A smaller change of gamma is none, however narrow its intervals: the placement of code alone moves as much."""
 
 
 @dataclass(frozen=True)
@@ -51,62 +44,17 @@ def compare(old: Sequence[Row], new: Sequence[Row]) -> list[Change]:
     seed, and is then compared as far as another sample allows. eps is the same for the same sample on the same kind of
     machine, so there any change counts; elsewhere, and for other samples, only what rounding or chance cannot explain
     (`_record/noise.py`). gamma is worse or better only where its two intervals lie apart and it changed by more than
-    `GAMMA`, and is not compared between different processors.
+    5 % and by more than the copy floor, which is the same work in every run: what the floor does not keep is the
+    machine's. It is not compared between different processors.
     """
-    before, after = _last(old), _last(new)
-    pairs = [pair for key in (_here, _anywhere, _of_any_sample) for pair in _take_pairs(before, after, key)]
+    pairs, before, after = take_pairs(old, new)
     changes = [change for then, now in pairs for change in _pair(then, now)]
     changes += [_whole(row, "gone", "in the old rows alone") for row in before]
     return changes + [_whole(row, "added", "in the new rows alone") for row in after]
 
 
-def _last(rows: Iterable[Row]) -> list[Row]:
-    return list({_here(row): row for row in rows}.values())
-
-
-def _take_pairs(before: list[Row], after: list[Row], key: Callable[[Row], Key]) -> list[tuple[Row, Row]]:
-    """Takes the rows that agree in a key out of both lists; of several, those of most samples come first."""
-    waiting = defaultdict(list)
-    for row in sorted(before, key=_samples):
-        waiting[key(row)].append(row)
-    found = sorted(after, key=_samples, reverse=True)
-    pairs = [(waiting[key(row)].pop(), row) for row in found if waiting[key(row)]]
-    taken = {id(row) for pair in pairs for row in pair}
-    for rows in (before, after):
-        rows[:] = [row for row in rows if id(row) not in taken]
-    return pairs
-
-
-def _samples(row: Row) -> int:
-    return row["samples"]
-
-
-def _here(row: Row) -> Key:
-    """The measurement, on this processor."""
-    return *_anywhere(row), repr(_where(row))
-
-
-def _anywhere(row: Row) -> Key:
-    """The measurement, whatever it was made on."""
-    return *_of_any_sample(row), row["samples"], row["seed"]
-
-
-def _of_any_sample(row: Row) -> Key:
-    keys = [key for key in IDENTITY if key not in ("parameters", "samples", "seed")]
-    return *(row[key] for key in keys), *_parameters(row)
-
-
-def _parameters(row: Row) -> Key:
-    given = sorted(row["parameters"].items())
-    return tuple((name, tuple(value) if isinstance(value, list) else value) for name, value in given)
-
-
 def _whole(row: Row, verdict: str, why: str) -> Change:
-    return Change(_identity(row), "row", None, None, verdict, why)
-
-
-def _identity(row: Row) -> dict[str, Any]:
-    return {key: row[key] for key in IDENTITY}
+    return Change(identity(row), "row", None, None, verdict, why)
 
 
 def _pair(old: Row, new: Row) -> Iterator[Change]:
@@ -130,7 +78,7 @@ def _epsilon(old: Row, new: Row) -> Iterator[Change]:
     before, after = old["epsilon"], new["epsilon"]
     for name in [*before, *(name for name in after if name not in before)]:
         verdict, why = _epsilon_verdict(name, old, new)
-        yield Change(_identity(new), f"eps {name}", before.get(name), after.get(name), verdict, why)
+        yield Change(identity(new), f"eps {name}", before.get(name), after.get(name), verdict, why)
 
 
 def _epsilon_verdict(name: str, old: Row, new: Row) -> tuple[str, str]:
@@ -149,7 +97,7 @@ def _epsilon_verdict(name: str, old: Row, new: Row) -> tuple[str, str]:
     then, now = abs(before[name]), abs(after[name])  # a bias has a sign
     if abs(now - then) <= limit:
         return "same", why
-    return ("worse" if now > then else "better"), "; ".join(part for part in (why, _other_formula(old, new)) if part)
+    return ("worse" if now > then else "better"), "; ".join([*([why] if why else []), *remarks(old, new)])
 
 
 def _one_sided(*, was: bool) -> tuple[str, str]:
@@ -168,19 +116,9 @@ def _limit(name: str, old: Row, new: Row) -> tuple[float | None, str]:
 
 def _same_kind(old: Row, new: Row) -> bool:
     """Whether two rows were measured where arithmetic is the same to the bit."""
-    return _where(old) == _where(new) and all(
+    return where(old) == where(new) and all(
         old["machine"]["versions"].get(name) == new["machine"]["versions"].get(name) for name in ("jax", "numpy")
     )
-
-
-def _where(row: Row) -> tuple[Any, ...]:
-    """The processor of a row: that of the graphics card too where it was at work."""
-    machine = row["machine"]
-    return machine.get("processor"), machine.get("devices") if "gpu" in row["backend"] else None
-
-
-def _other_formula(old: Row, new: Row) -> str:
-    return "" if old["formula"] == new["formula"] else "of another formula than then"
 
 
 # --- What is not finite ---
@@ -194,7 +132,7 @@ def _nonfinite(old: Row, new: Row) -> Iterator[Change]:
     for quantity, before, after in counts or [("nonfinite", old["nonfinite"], new["nonfinite"])]:
         if before is not None and after is not None:
             verdict, why = _count_verdict(before, after, old, new)
-            yield Change(_identity(new), quantity, before, after, verdict, why)
+            yield Change(identity(new), quantity, before, after, verdict, why)
 
 
 def _count_verdict(before: int, after: int, old: Row, new: Row) -> tuple[str, str]:
@@ -216,46 +154,6 @@ def _gamma(old: Row, new: Row) -> Iterator[Change]:
     before, after = old["gamma"], new["gamma"]
     if before is None and after is None:
         return
-    verdict, why = _gamma_verdict(old, new)
-    yield Change(_identity(new), "gamma", before, after, verdict, why)
-
-
-def _gamma_verdict(old: Row, new: Row) -> tuple[str, str]:
-    if new["gamma"] is None or old["gamma"] is None:
-        return _one_sided(was=new["gamma"] is None)
-    unlike = _unlike(old, new)
-    if unlike:
-        return "incomparable", unlike
-    if new["gamma_high"] >= old["gamma_low"] and old["gamma_high"] >= new["gamma_low"]:
-        return "same", "the intervals overlap"
-    if abs(new["gamma"] - old["gamma"]) <= GAMMA * old["gamma"]:
-        return "same", f"the change is within {GAMMA:.0%}"
-    notes = [_times(old, new), _other_formula(old, new), "" if old["flags"] == new["flags"] else "flags differ"]
-    return ("worse" if new["gamma"] < old["gamma"] else "better"), "; ".join(note for note in notes if note)
-
-
-def _unlike(old: Row, new: Row) -> str:
-    """Why two gammas cannot be compared; empty where they can."""
-    if _where(old) != _where(new):
-        return f"timed on different processors: {_processor(old)}, now {_processor(new)}"
-    cores = old["machine"].get("cores"), new["machine"].get("cores")
-    if cores[0] != cores[1]:
-        return f"timed on {cores[0]} cores, now on {cores[1]}"
-    if old["samples"] != new["samples"]:
-        return f"timed on {old['samples']} samples, now on {new['samples']}"
-    ends = [row[end] for row in (old, new) for end in ("gamma_low", "gamma_high")]
-    return "a gamma has no interval" if None in ends else ""
-
-
-def _processor(row: Row) -> str:
-    return ", ".join(str(part) for part in _where(row) if part)
-
-
-def _times(old: Row, new: Row) -> str:
-    """Which of the two times moved: a gamma falls too where the exact function has become faster."""
-    moved = [
-        f"{word} {old[key]:.3g} s -> {new[key]:.3g} s"
-        for word, key in (("exact", "exact_s"), ("fit", "fit_s"))
-        if old[key] is not None and new[key] is not None
-    ]
-    return ", ".join(moved)
+    known = before is not None and after is not None
+    verdict, why = gamma_verdict(old, new) if known else _one_sided(was=before is not None)
+    yield Change(identity(new), "gamma", before, after, verdict, why)

@@ -1,0 +1,104 @@
+"""What is timed against what: exact function, fit and copy floor, of the same samples."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from ratfit._kernel import Hoisted, Program, hoist
+from ratfit._lower import Step, lower, tape
+from ratfit._sampling import bounds, drawing
+from ratfit._setting import Setting
+
+NAMES = ("exact function", "fit", "copy floor")
+
+
+@dataclass(frozen=True)
+class Entrant:
+    """One of the three: its program with all that stands still taken out of it, and the values of that."""
+
+    name: str
+    program: Program
+    hoisted: Hoisted
+    varying: tuple[sp.Symbol, ...]
+    constants: tuple[float, ...]  # in float64; each backend rounds them to the dtype under test
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """What its function takes: what varies, then the constants."""
+        return (*self.varying, *(symbol for symbol, _ in self.hoisted.constants))
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The operations on each sample."""
+        return tape(self.hoisted.result, self.symbols, self.hoisted.steps)
+
+    def rounded(self, dtype: str) -> Any:
+        """The constants in a dtype, as one array."""
+        import numpy as np
+
+        with np.errstate(over="ignore"):
+            return np.asarray(self.constants, float).astype(dtype)
+
+    def function(self) -> Callable[..., Any]:
+        """The function of the symbols on NumPy."""
+        return lower(self.hoisted.result, self.symbols, "numpy", self.hoisted.steps)
+
+
+@dataclass(frozen=True)
+class Contest:
+    """The three, what they run on, and the values of the parameters that stand still."""
+
+    entrants: tuple[Entrant, ...]  # exact, fit, floor
+    samples: tuple[Any, ...]  # NumPy arrays in the dtype under test: the variable, then the parameters drawn at random
+    place: Setting
+    dtype: str
+
+
+@dataclass(frozen=True)
+class Runs:
+    """What a backend makes of a contest: a call for each entrant that computes every sample and waits for the last."""
+
+    calls: tuple[Callable[[], Any], ...]
+    flags: str
+    caution: str = ""  # what to say beside an output that is not finite
+    scope: Callable[[], contextlib.AbstractContextManager[Any]] = contextlib.nullcontext  # in which to call them
+
+
+def contest(place: Setting, samples: int, seed: int, dtype: str) -> Contest:
+    """Exact, fit and floor of a setting, on the uniform samples of this seed."""
+    return Contest(entrants(place), _samples(place, samples, seed, dtype), place, dtype)
+
+
+def entrants(place: Setting) -> tuple[Entrant, ...]:
+    """Exact, fit and floor: `x + 1`, or the sum of all that varies and 1: read every sample, write one, add."""
+    floor = Program(sp.Add(*place.varying, 1))
+    return tuple(map(_entrant, NAMES, (Program(place.exact), place.program, floor), [place] * len(NAMES)))
+
+
+def _entrant(name: str, program: Program, place: Setting) -> Entrant:
+    hoisted = hoist(program, place.varying)
+    return Entrant(name, program, hoisted, place.varying, hoisted.values(place.values))
+
+
+def _samples(place: Setting, samples: int, seed: int, dtype: str) -> tuple[Any, ...]:
+    import jax
+    import jax.numpy as jnp
+    import numpy as np
+
+    with jax.enable_x64(True):
+        counters = jnp.arange(samples, dtype=jnp.uint64)
+        drawn = _drawn(dtype)(np.uint64(seed), counters, bounds(place, dtype))
+    return tuple(map(np.asarray, drawn))
+
+
+@functools.cache
+def _drawn(dtype: str) -> Callable[..., tuple[Any, ...]]:
+    import jax
+
+    return jax.jit(drawing("uniform", dtype))

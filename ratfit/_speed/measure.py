@@ -1,0 +1,130 @@
+"""The verb of speed: exact function, fit and copy floor against one another, in a regime of one's choice."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ratfit._parse import RatfitError
+from ratfit._sampling import check_protocol
+from ratfit._setting import Setting, Value, setting
+from ratfit._speed.backends import BACKENDS, Backend, backend_named
+from ratfit._speed.check import verdict
+from ratfit._speed.contest import Contest, contest, entrants
+from ratfit._speed.cost_model import weight
+from ratfit._speed.notes import floor_note, load, noise_note, size_note
+from ratfit._speed.rounds import race, ratio_interval
+
+
+@dataclass(frozen=True)
+class SpeedMeasurement:
+    """The times of exact, fit and copy floor, and what follows from them.
+
+    `gamma` is the exact function's median time over the fit's, the floor not subtracted; `gamma_low` and `gamma_high`
+    are the ends of its 95 % interval. `exact_s`, `fit_s` and `floor_s` are the medians, in seconds for one call on all
+    samples, of the raw `exact_times`, `fit_times` and `floor_times`, one a round. `note` says how to read gamma.
+
+    gamma is None where the timed output is wrong, which the note then says. The cost model times nothing: its gamma is
+    a ratio of weights without an interval, and it has no seconds.
+    """
+
+    exact_s: float | None
+    fit_s: float | None
+    floor_s: float | None
+    gamma: float | None
+    gamma_low: float | None
+    gamma_high: float | None
+    note: str
+    exact_times: tuple[float, ...]
+    fit_times: tuple[float, ...]
+    floor_times: tuple[float, ...]
+    backend: str
+    flags: str  # XLA_FLAGS as they stood, or the compiler and its flags
+    samples: int
+    seed: int
+    dtype: str
+    parameters: dict[str, Any]
+    reference: str | None
+    regime: str
+    checked: bool | None  # whether the timed output is what the formulas mean; None where nothing ran
+
+
+def measure_speed(
+    fit: Any,
+    *,
+    backend: str = "jax-cpu",
+    samples: int = 1_000_000,
+    seed: int = 0,
+    dtype: str = "float32",
+    parameters: Mapping[str, Value] | None = None,
+    reference: str | None = None,
+    repeats: int | None = None,
+) -> SpeedMeasurement:
+    """Time the exact function, the fit and the copy floor against one another.
+
+    **Arguments:**
+
+    - `fit`, `parameters`, `reference`: as for `measure_error`.
+    - `backend`: a name of `BACKENDS`; `available()` says which of them this machine has.
+    - `samples`, `seed`: the size and seed of the uniform sample that all three run on; `dtype`: their arithmetic.
+    - `repeats`: the number of rounds; left out, as many as fit into 1.5 s.
+
+    **Fails** with `RatfitError` for a backend that this machine does not have, for a C compiler that fails, and as
+    `measure_error` does.
+    See also: `measure_error`.
+    """
+    check_protocol("uniform", samples, seed, dtype)
+    if repeats is not None and repeats < 1:
+        raise RatfitError(f"repeats = {repeats}: a whole number from 1 upwards is needed, or None")
+    place, chosen = setting(fit, parameters, reference), backend_named(backend)
+    found = _modelled(place, dtype) if chosen.prepare is None else _timed(place, chosen, samples, seed, dtype, repeats)
+    return SpeedMeasurement(
+        **found, backend=backend, samples=samples, seed=seed, dtype=dtype, parameters=place.parameters,
+        reference=reference, regime=BACKENDS[backend],
+    )  # fmt: skip
+
+
+def _modelled(place: Setting, dtype: str) -> dict[str, Any]:
+    """What the cost model says: a fit that costs nothing has no gamma."""
+    exact, fit, _ = (weight(entrant.steps, dtype) for entrant in entrants(place))
+    nothing = "" if fit else "; a fit without operations has no gamma"
+    return {
+        "exact_s": None, "fit_s": None, "floor_s": None, "gamma": exact / fit if fit else None, "gamma_low": None,
+        "gamma_high": None, "note": f"exact function {exact:g} additions, fit {fit:g}{nothing}", "exact_times": (),
+        "fit_times": (), "floor_times": (), "flags": "", "checked": None,
+    }  # fmt: skip
+
+
+def _timed(
+    place: Setting, backend: Backend, samples: int, seed: int, dtype: str, repeats: int | None
+) -> dict[str, Any]:
+    """What a backend's rounds say, after a look at what they gave."""
+    assert backend.prepare is not None
+    waiting, three = load(), contest(place, samples, seed, dtype)
+    runs = backend.prepare(three)
+    raced = race(runs, repeats)
+    exact_s, fit_s, floor_s = map(statistics.median, raced.times)
+    low, high = ratio_interval(*raced.times[:2])
+    wrong, remark = _checked(three, raced.outputs, runs.caution)
+    notes = (
+        wrong, remark, floor_note(exact_s, fit_s, floor_s), noise_note(low, high, raced.times, waiting),
+        size_note(samples),
+    )  # fmt: skip
+    ratios: tuple[float | None, ...] = (None, None, None) if wrong else (exact_s / fit_s, low, high)
+    return {
+        "exact_s": exact_s, "fit_s": fit_s, "floor_s": floor_s, **dict(zip(("gamma", "gamma_low", "gamma_high"), ratios, strict=True)),
+        "note": "; ".join(filter(None, notes)), "exact_times": raced.times[0], "fit_times": raced.times[1],
+        "floor_times": raced.times[2], "flags": runs.flags, "checked": not wrong,
+    }  # fmt: skip
+
+
+def _checked(three: Contest, outputs: tuple[Any, ...], caution: str) -> tuple[str, str]:
+    """What is wrong with the outputs, and a remark on what is not finite in them, rightly."""
+    found = [verdict(entrant, three, output) for entrant, output in zip(three.entrants, outputs, strict=True)]
+    wrong = "; ".join(each.wrong for each in found if each.wrong)
+    if wrong:
+        return f"{wrong}; {caution}" if caution else wrong, ""
+    some = max(each.nonfinite for each in found)
+    return "", f"{some} samples are nan or infinite; {caution}" if some and caution else ""

@@ -84,6 +84,7 @@ def _draw(axes: Axes, point: Point, floor: float, style: int, gid: str) -> None:
 def _make_logarithmic(axes: Axes, points: Sequence[Point], floor: float) -> None:
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
+    axes.autoscale(False)  # to the points alone, of which there may be one, an axis would have no width
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(*_room([gamma for p in points for gamma in (p.gamma, p.low, p.high) if gamma], 1.5))

@@ -28,7 +28,7 @@ def specification(problem: ProblemRows) -> Iterator[Block]:
         yield Paragraph("The record holds no derivation of this row.")
         return
     if fit["target"]:
-        yield _drawn(fit, fit["target"])
+        yield formula(fit["target"], fit)
     pairs: list[tuple[str, Text]] = [("domain", f"{fit['variable']} in [{', '.join(fit['domain'])}]")]
     pairs += [("parameter", f"{name} in [{', '.join(ends)}]") for name, ends in fit["parameters"].items()]
     pairs += [("form", _form(fit["form"]))]
@@ -66,25 +66,20 @@ def _residual(residual: float | None) -> Cell:
     return Cell(number(residual, 2), residual)
 
 
-def _drawn(fit: dict[str, Any], text: str) -> Formula:
-    return formula(text, (fit["variable"], *fit["parameters"], *(free["name"] for free in fit["free"])))
-
-
-def fit(problem: ProblemRows) -> Iterator[Block]:
+def answer(problem: ProblemRows) -> Iterator[Block]:
     fit = problem.fit
     if fit is None:
         return
     if fit["expression"] is None:
-        yield Paragraph(("No formula: ", STATUS.get(fit["status"], fit["status"]), "."))
-    else:
-        yield _drawn(fit, fit["expression"])
+        yield Paragraph(f"No formula: {STATUS.get(fit['status'], fit['status'])}.")
+        yield from _derivation(fit)
+        return
+    yield formula(fit["expression"], fit)
     yield Details("How it was derived", tuple(_derivation(fit)))
 
 
 def _derivation(fit: dict[str, Any]) -> Iterator[Block]:
     pairs: list[tuple[str, Text]] = [("status", STATUS.get(fit["status"], fit["status"])), ("route", fit["route"])]
-    if "support" in fit["form"]:
-        pairs.append(("support", f"[{', '.join(fit['form']['support'])}], {fit['form'].get('outside', '0')} outside"))
     pairs += [("free", f"{' < '.join((f['range'][0], f['name'], f['range'][1]))}") for f in fit["free"]]
     pairs += [("choice", f"{name} = {value}") for name, value in fit["choice"].items()]
     if fit["cost"]:
@@ -103,17 +98,16 @@ def _rejected(rejected: Sequence[dict[str, Any]]) -> Table:
 
 
 def published(problem: ProblemRows) -> Iterator[Block]:
-    published = next((row["published"] for row in problem.rows if row.get("published")), None)
-    if published is None:
+    printed = next((row["published"] for row in problem.rows if row.get("published")), None)
+    if printed is None:
         return
-    fit = problem.fit
-    yield _drawn(fit, published["expression"]) if fit else Formula(published["expression"])
+    yield formula(printed["expression"], problem.fit) if problem.fit else Formula(printed["expression"])
     equal = {True: "equal to the fit, symbolically", False: "NOT equal to the fit", None: "not compared with the fit"}
     pairs: list[tuple[str, Text]] = [
-        ("source", f"{published['source']}, {published['place']}"),
-        ("formula", equal[published["equal"]]),
-        ("printed eps", f"{number(published['epsilon'])}; measured: {_measured_epsilon(problem)}"),
-        ("printed gamma", f"{number(published['gamma'])}; measured: {gamma_range(problem.with_times())}"),
+        ("source", f"{printed['source']}, {printed['place']}"),
+        ("formula", equal[printed["equal"]]),
+        ("printed eps", f"{number(printed['epsilon'])}; measured: {_measured_epsilon(problem)}"),
+        ("printed gamma", f"{number(printed['gamma'])}; measured: {gamma_range(problem.with_times())}"),
     ]
     yield Facts(tuple(pairs))
 

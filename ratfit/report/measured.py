@@ -120,13 +120,13 @@ def _between(low: str, high: str) -> str:
 
 
 def _known(value: float, low: float, high: float) -> str:
-    """A value to the place where the interval's width has its first digit, and to no more than three digits."""
+    """A value to the place where the interval's width has its first digit, and to no more than four digits."""
     if not high > low:
         return number(value)
     place = math.floor(math.log10(high - low))
     digits = math.floor(math.log10(abs(value))) - place + 1 if value else 1
-    shown = float(f"{value:.{min(max(digits, 1), 3)}g}")
-    return f"{shown:.{max(0, -place)}f}" if abs(shown) < 100 and digits <= 3 else number(shown)
+    shown = float(f"{value:.{min(max(digits, 1), 4)}g}")
+    return f"{shown:.{max(0, -place)}f}" if digits <= 4 and abs(shown) < 1e6 else number(shown, 4)
 
 
 def is_bound(row: Row) -> bool:

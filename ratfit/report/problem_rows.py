@@ -46,14 +46,14 @@ class ProblemRows:
         return leading(self.main)
 
     def with_errors(self) -> tuple[Row, ...]:
-        """The main rows under the dtype and sampling of the first that has an eps."""
-        return _like_first(self.main, lambda row: row["epsilon"].get(self.leading), lambda row: circumstances(row)[1:])
+        """The main rows under the circumstances of the first that has an eps."""
+        return _like_first(self.main, lambda row: row["epsilon"].get(self.leading))
 
     def with_times(self) -> tuple[Row, ...]:
         """The main rows under the circumstances of the first that has a gamma."""
-        return _like_first(self.main, lambda row: row["gamma"], circumstances)
+        return _like_first(self.main, lambda row: row["gamma"])
 
 
-def _like_first(rows: Sequence[Row], value: Callable[[Row], Any], key: Callable[[Row], Any]) -> tuple[Row, ...]:
-    first = next((row for row in rows if value(row) is not None), None)
-    return () if first is None else tuple(row for row in rows if key(row) == key(first) and value(row) is not None)
+def _like_first(rows: Sequence[Row], value: Callable[[Row], Any]) -> tuple[Row, ...]:
+    known = [row for row in rows if value(row) is not None]
+    return tuple(row for row in known if circumstances(row) == circumstances(known[0]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ratfit.report.derivation import fit, published, specification
+from ratfit.report.derivation import answer, published, specification
 from ratfit.report.document import Block, Section, Verbatim
 from ratfit.report.evidence import alternatives, costs, errors
 from ratfit.report.headlines import headlines
@@ -17,7 +17,7 @@ def problem_section(problem: ProblemRows) -> Section:
         ("Specification", specification(problem)),
         ("Error over the domain", errors(problem)),
         ("Accuracy and cost", costs(problem)),
-        ("The fit", fit(problem)),
+        ("The fit", answer(problem)),
         ("Alternatives", alternatives(problem)),
         ("Published", published(problem)),
         ("To reproduce", _commands(problem)),

@@ -66,7 +66,7 @@ def test_a_change_says_of_what_and_by_how_much():
     assert found.by == pytest.approx(0.25)
     assert found.row == {
         "name": "smith", "parameters": {"m": 0.2}, "samples": 10_000, "sampling": "uniform", "dtype": "float32",
-        "backend": "jax-cpu", "regime": "arrays", "seed": 0,
+        "backend": "jax-cpu", "seed": 0,
     }  # fmt: skip
 
 
@@ -245,7 +245,7 @@ def test_counts_are_compared_one_by_one_where_both_rows_have_them():
         (2.9, 3.0, 3.1, "worse"), (4.9, 5.0, 5.1, "better"),
         (2.0, 3.0, 3.9, "same"),  # its interval touches the old one, [3.9, 4.1]
         (3.84, 3.85, 3.86, "same"), (4.14, 4.15, 4.16, "same"),  # apart from the old one, but within 5 %
-        (3.7, 3.75, 3.8, "worse"), (None, 3.0, None, "incomparable"), (None, None, None, "gone"),
+        (3.7, 3.75, 3.8, "worse"), (None, 3.0, None, "incomparable"),
     ],
 )  # fmt: skip
 def test_gamma_changes_where_its_intervals_lie_apart(low, gamma, high, verdict):
@@ -282,9 +282,26 @@ def test_a_machine_that_was_not_itself_changes_no_gamma(floor, gamma, verdict):
 
 
 def test_a_row_without_speed_has_no_gamma_to_compare():
-    untimed = replace(RECORD, gamma=None, gamma_low=None, gamma_high=None)
+    untimed = replace(RECORD, **UNTIMED, gamma=None)
     assert "gamma" not in verdicts(untimed, untimed)
-    assert verdicts(RECORD, untimed)["gamma"] == "added"
+    assert (verdicts(RECORD, untimed)["gamma"], verdicts(untimed)["gamma"]) == ("added", "gone")
+
+
+def test_a_fit_that_was_timed_and_found_wrong_is_worse():
+    wrong = replace(RECORD, gamma=None, gamma_low=None, gamma_high=None, note="the timed output is not the fit")
+    found = change_of("gamma", wrong)
+    assert found.verdict == "worse" and "the timed output is not the fit" in found.why
+    assert verdicts(RECORD, wrong)["gamma"] == "better"
+
+
+UNTIMED = {"exact_s": None, "fit_s": None, "floor_s": None, "gamma_low": None, "gamma_high": None}
+
+
+@pytest.mark.parametrize(("gamma", "verdict"), [(4.0, "same"), (3.99, "worse"), (4.01, "better")])
+def test_operations_that_are_counted_are_the_same_on_every_machine(gamma, verdict):
+    old = replace(RECORD, **UNTIMED, backend="cost-model")
+    for new in (old, of_machine(old, processor="B 2", cores=64)):
+        assert verdicts(replace(new, gamma=gamma), old)["gamma"] == verdict
 
 
 # --- Pairs of rows ---
@@ -297,7 +314,7 @@ def rows(*records):
 @pytest.mark.parametrize(
     "other",
     [{"name": "sine"}, {"parameters": {"m": 0.3}}, {"parameters": {"m": (0.1, 0.5)}}, {"sampling": "cosine"},
-     {"dtype": "float64"}, {"backend": "c"}, {"regime": "scalar"}],
+     {"dtype": "float64"}, {"backend": "c"}],
 )  # fmt: skip
 def test_rows_of_different_measurements_are_no_pair(other):
     found = compare(rows(RECORD), rows(replace(RECORD, **other)))

@@ -154,6 +154,5 @@ def _gamma(old: Row, new: Row) -> Iterator[Change]:
     before, after = old["gamma"], new["gamma"]
     if before is None and after is None:
         return
-    known = before is not None and after is not None
-    verdict, why = gamma_verdict(old, new) if known else _one_sided(was=before is not None)
+    verdict, why = gamma_verdict(old, new)
     yield Change(identity(new), "gamma", before, after, verdict, why)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ratfit._record.noise import PRECISION
 from ratfit._record.pairs import remarks, where
 from ratfit._record.row import Row
 
@@ -10,7 +11,11 @@ GAMMA = 0.05
 
 
 def gamma_verdict(old: Row, new: Row) -> tuple[str, str]:
-    """The verdict on two gammas that were both measured, and by which rule."""
+    """The verdict on two gammas, at least one of which is there, and by which rule."""
+    if old["gamma"] is None or new["gamma"] is None:
+        return _one_sided(old, new)
+    if old["exact_s"] is None and new["exact_s"] is None:
+        return _counted(old, new)
     unlike = _unlike(old, new)
     if unlike:
         return "incomparable", unlike
@@ -21,7 +26,27 @@ def gamma_verdict(old: Row, new: Row) -> tuple[str, str]:
         return "same", f"the change is within {GAMMA:.0%}"
     if change <= floor:
         return "incomparable", "the copy floor changed by more than gamma: time it again on a quiet machine"
-    return ("worse" if new["gamma"] < old["gamma"] else "better"), "; ".join([_times(old, new), *remarks(old, new)])
+    return _direction(old, new), "; ".join([_times(old, new), *remarks(old, new)])
+
+
+def _direction(old: Row, new: Row) -> str:
+    return "worse" if new["gamma"] < old["gamma"] else "better"
+
+
+def _one_sided(old: Row, new: Row) -> tuple[str, str]:
+    """What was timed and has no gamma was found to compute something else; what was not timed says nothing."""
+    empty = new if new["gamma"] is None else old
+    if empty["exact_s"] is None:
+        return ("gone", "only the old row has it") if empty is new else ("added", "only the new row has it")
+    verdict = "worse" if empty is new else "better"
+    return verdict, f"timed, but without a gamma: {empty['note'] or 'no reason is given'}"
+
+
+def _counted(old: Row, new: Row) -> tuple[str, str]:
+    """Operations that were counted, not timed, are the same wherever they are counted."""
+    if _change(old["gamma"], new["gamma"]) <= PRECISION:
+        return "same", ""
+    return _direction(old, new), "; ".join(["counted, not timed", *remarks(old, new)])
 
 
 def _change(old: float | None, new: float | None) -> float:

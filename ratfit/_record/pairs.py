@@ -10,7 +10,7 @@ from ratfit._record.row import Row
 
 Key = tuple[Any, ...]
 
-IDENTITY = ("name", "parameters", "samples", "sampling", "dtype", "backend", "regime", "seed")
+IDENTITY = ("name", "parameters", "samples", "sampling", "dtype", "backend", "seed")
 """The keys in which rows of the same measurement agree."""
 
 

@@ -3,6 +3,7 @@
 import contextlib
 import itertools
 import math
+from fractions import Fraction
 
 import jax
 import mpmath
@@ -16,7 +17,7 @@ from ratfit._sampling.counter import direction_fractions
 from ratfit._sampling.ends import ends
 from ratfit._sampling.portable import quarter_sine
 from ratfit._sampling.protocols import CARRIERS
-from ratfit._sampling.sobol import COORDINATES, DIGITS, directions
+from ratfit._sampling.sobol import COORDINATES, DIGITS, directions, sobol_fractions
 
 MILLION = 1_000_000
 
@@ -81,18 +82,33 @@ def test_points_depend_on_neither_shape_nor_chunk_nor_kernel():
     counters, seed = np.arange(600, dtype=np.uint64), np.uint64(5)
 
     def points(counters):
-        return {name: drawing(name, "float64")(seed, counters, ranges) for name in CARRIERS}
+        ranges = {name: [row, row] if name == "sobol" else [row] for name in CARRIERS}
+        return [each for name in CARRIERS for each in drawing(name, "float64")(seed, counters, ranges[name])]
 
     with jax.enable_x64(True):
-        ranges = [ends(0, 1, "float64"), ends(0, 2, "float64")]
+        row = ends(0, 1, "float64")
         whole = jax.jit(points)(counters)
-        chunks = jax.jit(lambda: jax.lax.map(lambda start: points(start + counters[:7]), counters[::7]))()
-        square = jax.jit(points)(counters.reshape(20, 30))
+        square = counters[:6].reshape(2, 3)
+        chunks = jax.jit(lambda: jax.lax.map(lambda start: points(start + square), counters[::6]))()
         with jax.disable_jit():
             alone = points(jax.numpy.asarray(counters))
-    for name, place in itertools.product(CARRIERS, (0, 1)):
-        for other in (chunks, square, alone):
-            assert (np.ravel(other[name][place])[:600] == np.asarray(whole[name][place])).all(), name
+    for place, expected in enumerate(whole):
+        for other in (chunks, alone):
+            assert (np.ravel(other[place]) == np.asarray(expected)).all(), [*CARRIERS, "parameter"][place]
+
+
+def test_uniform_points_are_the_same_in_every_kernel_of_a_machine():
+    """The machine decides, by having a fused multiply-add or not, whether product and sum are rounded once or twice."""
+    low, high, counters = 1.1, 3.3, np.arange(63, dtype=np.uint64)
+    whole = drawn("uniform", [(low, high)], counters, 2)[0].tolist()
+    assert (
+        np.concatenate([drawn("uniform", [(low, high)], each, 2)[0] for each in (counters[:1], counters[1:])]).tolist()
+        == whole
+    )
+    parts = [fraction(2, counter) for counter in range(63)]
+    twice = [low + (high - low) * part for part in parts]
+    once = [float(Fraction(low) + Fraction(high - low) * Fraction(part)) for part in parts]
+    assert whole in (once, twice)
 
 
 def test_the_sine_of_a_quarter_turn_is_right_to_a_few_units_in_the_last_place():
@@ -146,7 +162,7 @@ TEXTBOOK = [
 def test_points_are_those_of_the_formula(sampling, domain, formula):
     counters = [0, 1, 2, 999, 2**33]
     expected = [formula(*(fraction(11, counter, each, ROOT_TWO) for each in range(4))) for counter in counters]
-    assert drawn(sampling, [domain], counters, 11)[0].tolist() == pytest.approx(expected, rel=1e-12)
+    assert drawn(sampling, [domain], counters, 11, jit=False)[0].tolist() == pytest.approx(expected, rel=1e-12)
 
 
 # --- Distributions: the cumulative distribution of each, derived by hand, makes the points uniform ---
@@ -204,7 +220,7 @@ def test_the_digits_of_sobol_are_independent_up_to_the_last(coordinate):
 
 @pytest.mark.parametrize("start", [0, 2**40 - 2**20])
 def test_sobol_puts_one_point_into_each_of_equal_parts(start):
-    first, second, *others = drawn("sobol", [(0, 1)] * COORDINATES, np.arange(start, start + 1024), 4, jit=False)
+    first, second, *others = drawn("sobol", [(0, 1)] * 5, np.arange(start, start + 1024), 4, jit=False)
     for each in (first, second, *others):
         assert sorted(np.floor(each * 1024)) == list(range(1024))
     for power in range(11):  # and of equal boxes, whatever their shape
@@ -422,7 +438,7 @@ def test_check_protocol_lets_pass_what_can_be_measured():
         (lambda: sample("exhaustive", 0, 1, 10, 0), "float64 has too many"),
         (lambda: drawing("exhaustive", "float64"), "float64 has too many"),
         (lambda: drawn("exhaustive", [(0, 1), (0, 1)], [0], dtype="float32"), "give the parameters values"),
-        (lambda: drawn("sobol", [(0, 1)] * (COORDINATES + 1), [0]), "15 parameters at most"),
+        (lambda: sobol_fractions(0, 0, COORDINATES), "15 parameters at most"),
         (lambda: count(0, 1, "float64"), "float64 has too many"),
         (lambda: count(0, math.inf, "float32"), "finite ends"),
         (lambda: count(1, 0, "float32"), "low <= high"),

@@ -1,48 +1,71 @@
-"""Rows to measure: a fit at each setting of its parameters, against its target and each reference."""
+"""Rows to measure: a fit and its peers at each setting of the parameters, against the target and each reference."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
-from ratfit._error import ErrorMeasurement, measure_error
+from ratfit._error import ErrorMeasurement, Watch, measure_error
 from ratfit._fit import Fit
 from ratfit._record import Record
-from ratfit._setting import setting
+from ratfit._sampling import count, resolve
+from ratfit._setting import RANDOM, Setting, Value, setting
 from ratfit._speed import measure_speed
+from ratfit.baselines import Peer, Unavailable, peers
+
+TIMED = 1_000_000
+"""Samples that are timed, however many the errors are measured at: gamma of fewer says little, of more no more."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """One row to measure: the fit against its target (reference None) or a reference, at values of the parameters."""
+    """What to measure: a fit, or a peer of it, against the target (reference None) or a reference, somewhere."""
 
     fit: Fit
-    parameters: Mapping[str, float]
+    parameters: Mapping[str, Value]
     reference: str | None
+    peer: Peer | None = None
 
     @property
     def name(self) -> str:
-        """The name of the row: the problem's, and after a colon the reference's."""
-        return self.fit.problem.name + (f":{self.reference}" if self.reference else "")
+        """The name of its rows: the problem's, after a colon the reference's, after a tilde the peer's."""
+        against = f":{self.reference}" if self.reference else ""
+        return self.fit.problem.name + against + (f"~{self.peer.name}" if self.peer else "")
+
+    @property
+    def measured(self) -> Any:
+        """What is measured: the peer, or else the fit."""
+        return self.peer or self.fit
+
+    @property
+    def place(self) -> Setting:
+        """Formula, exact function, values and domain."""
+        return setting(self.measured, self.parameters, self.reference)
+
+    @cached_property
+    def formula(self) -> str:
+        """What is measured of, in short: a row of another formula is not the same measurement."""
+        text = f"{self.measured.formula} | {self.place.exact}"
+        return hashlib.sha256(text.encode()).hexdigest()[:10]
 
 
 @dataclass(frozen=True)
 class Measuring:
-    """How to measure: the same for every row of a run."""
+    """How to measure: the same for every row of a run. `samples` is None where every number of the dtype is taken."""
 
-    samples: int
+    samples: int | None
     seed: int
     sampling: str
     dtype: str
-    backend: str
 
 
-def jobs(fit: Fit, settings: Sequence[Mapping[str, sp.Expr | float]] = ()) -> list[Job]:
-    """Every row of a fit: its target, when it has one, and its references, at each of the settings.
+def jobs(fit: Fit, settings: Sequence[Mapping[str, sp.Expr | Value]] = ()) -> list[Job]:
+    """Every job of a fit: its target, when it has one, and its references, at each of the settings.
 
     Without settings the parameters take the low end, the middle and the high end of their ranges; values that a
     reference gives are left to it.
@@ -53,11 +76,15 @@ def jobs(fit: Fit, settings: Sequence[Mapping[str, sp.Expr | float]] = ()) -> li
     found = []
     for reference in against:
         for values in settings or _ends_and_middle(fit):
-            kept = {n: float(v) for n, v in values.items() if n not in given.get(reference or "", set())}
+            kept = {n: _value(v) for n, v in values.items() if n not in given.get(reference or "", set())}
             job = Job(fit, kept, reference)
             if job not in found:
                 found.append(job)
     return found
+
+
+def _value(value: sp.Expr | Value) -> Value:
+    return value if isinstance(value, str) else float(value)
 
 
 def _ends_and_middle(fit: Fit) -> list[dict[str, float]]:
@@ -68,50 +95,88 @@ def _ends_and_middle(fit: Fit) -> list[dict[str, float]]:
     return [{p.name: float(low + s * (high - low)) for p, (low, high) in parameters.items()} for s in shares]
 
 
-def measure(job: Job, how: Measuring, *, speed: bool = True) -> Record:
-    """Measures one row; without `speed` its times and gamma are None."""
-    given: dict[str, Any] = {"parameters": job.parameters, "reference": job.reference}
-    error = measure_error(job.fit, samples=how.samples, sampling=how.sampling, seed=how.seed, dtype=how.dtype, **given)
-    timed = None
-    if speed:
-        timed = measure_speed(
-            job.fit, backend=how.backend, samples=how.samples, seed=how.seed, dtype=how.dtype, **given
-        )
+def peer_jobs(found: Sequence[Job]) -> tuple[list[Job], list[tuple[str, str]]]:
+    """The jobs of the peers of every timed job, and the peers that there are not, by name, with the reason."""
+    made: list[Job] = []
+    missing: dict[str, str] = {}
+    for job in filter(is_timed, found):
+        if RANDOM in job.parameters.values():
+            missing["peers"] = "one is made for values of the parameters, not for random ones"
+            continue
+        for peer in peers(job.fit, job.parameters, job.reference):
+            if isinstance(peer, Unavailable):
+                missing.setdefault(f"{job.name}~{peer.name}", peer.reason)
+            else:
+                made.append(replace(job, peer=peer))
+    return made, list(missing.items())
+
+
+def is_timed(job: Job) -> bool:
+    """Whether a gamma is wanted: against the function that the fit replaces, not against corrected ones."""
+    return job.reference is None or job.fit.problem.target is None
+
+
+def asked(job: Job, how: Measuring, backend: str) -> dict[str, Any]:
+    """The measurement that one row is the result of, in the keys that rows have for it."""
+    place = job.place
+    sampling = resolve(how.sampling, place.variable.name, place.low, place.high, how.dtype)
+    samples = count(place.low, place.high, how.dtype) if how.samples is None else how.samples
+    return {
+        **asdict(how), "samples": samples, "sampling": sampling, "name": job.name, "parameters": place.parameters,
+        "backend": backend, "formula": job.formula,
+    }  # fmt: skip
+
+
+def measure(
+    job: Job,
+    how: Measuring,
+    backends: Sequence[str],
+    *,
+    about: Mapping[str, Any] | None = None,
+    watch: Watch | None = None,
+    say: Callable[[str], None] = lambda text: None,
+) -> Iterator[Record]:
+    """Measures the errors once, then the speed on each backend; a record for each, as soon as it is known.
+
+    **Arguments:** the `job` and how to measure it; `backends`, or none for the errors alone, whose record then has no
+    backend; `about` gives further fields of the records (command, fit, published); `watch` is for the errors, and
+    `say` is told what goes on.
+    """
+    given: dict[str, Any] = {"parameters": job.parameters, "reference": job.reference, "seed": how.seed}
+    error = measure_error(
+        job.measured, samples=how.samples, sampling=how.sampling, dtype=how.dtype, watch=watch, **given
+    )
+    for backend in backends or ("",):
+        say(f"timing on {backend}" if backend else "")
+        yield _record(job, error, backend, given, about or {})
+
+
+def _record(
+    job: Job, error: ErrorMeasurement, backend: str, given: Mapping[str, Any], about: Mapping[str, Any]
+) -> Record:
+    speed: dict[str, Any] = dict.fromkeys(("exact_s", "fit_s", "floor_s", "gamma", "gamma_low", "gamma_high"), None)
+    notes = [job.peer.about.replace("; ", ", ") if job.peer else "", error.note]
+    if backend:
+        timed = measure_speed(job.measured, backend=backend, samples=TIMED, dtype=error.dtype, **given)
+        speed = {key: getattr(timed, key) for key in speed}
+        notes.append(timed.note)
     return Record(
         name=job.name,
         parameters=error.parameters,
-        samples=how.samples,
-        seed=how.seed,
-        sampling=how.sampling,
-        dtype=how.dtype,
-        backend=how.backend,
-        regime="jitted arrays",
-        flags=timed.flags if timed else "",
+        samples=error.samples,
+        seed=error.seed,
+        sampling=error.sampling,
+        dtype=error.dtype,
+        backend=backend,
+        regime=timed.regime if backend else "errors alone",
+        flags=timed.flags if backend else "",
         epsilon=error.epsilon,
         nonfinite=error.nonfinite,
         worst=error.worst,
-        exact_s=timed.exact_s if timed else None,
-        fit_s=timed.fit_s if timed else None,
-        floor_s=timed.floor_s if timed else None,
-        gamma=timed.gamma if timed else None,
-        gamma_low=timed.gamma_low if timed else None,
-        gamma_high=timed.gamma_high if timed else None,
-        note="; ".join(n for n in (formula_tag(job), _warning(error), timed.note if timed else "eps only") if n),
+        **speed,
+        note="; ".join(filter(None, notes)),
+        formula=job.formula,
+        counts=error.counts,
+        curve=error.curve,
+        **about,
     )
-
-
-def formula_tag(job: Job) -> str:
-    """What the row was measured of, in short: a row of another formula is not the same measurement."""
-    text = f"{job.fit.formula} | {setting(job.fit, job.parameters, job.reference).exact}"
-    return f"formula {hashlib.sha256(text.encode()).hexdigest()[:10]}"
-
-
-def _warning(error: ErrorMeasurement) -> str:
-    if error.nonfinite == error.samples:
-        return f"no sample is finite in {error.dtype}: its constants or values leave that type's range"
-    return ""
-
-
-def parameters_of(job: Job) -> dict[str, float]:
-    """All values that a row will state, those of its reference too; what --resume compares."""
-    return setting(job.fit, job.parameters, job.reference).parameters

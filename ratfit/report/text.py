@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import sympy as sp
 
@@ -141,6 +142,14 @@ def _card_lines(fit: Fit, card: Card) -> list[str]:
 def agreement(fit: Fit, card: Card) -> str:
     """Whether the derived expression equals the published one, symbolically."""
     return "symbolically equal" if equals_published(fit, card) else "NOT equal to what was derived"
+
+
+def published_object(fit: Fit, card: Card | None) -> dict[str, Any] | None:
+    """What was published of a problem, and whether the fit is that, as a record holds it."""
+    if card is None or not card.printed:
+        return None
+    about = {"place": card.place, "source": card.source, "expression": card.printed}
+    return {**about, "equal": equals_published(fit, card), "epsilon": card.epsilon, "gamma": card.gamma}
 
 
 def equals_published(fit: Fit, card: Card) -> bool:

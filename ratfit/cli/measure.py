@@ -1,0 +1,244 @@
+"""`ratfit bench`, `report` and `paper`: measuring, and what comes of it."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ratfit._fit import Fit
+from ratfit._inline import settings_of
+from ratfit._parse import RatfitError
+from ratfit._target import exact
+from ratfit.cli.derive import rendered
+from ratfit.cli.options import EXPRESSION_HELP, WORDS, Number, derived, problem_options, read_problem, together
+from ratfit.gallery import Card
+
+if TYPE_CHECKING:
+    from ratfit._bench import Job
+    from ratfit.report.bench import Run
+
+BACKEND_HELP = """Time there alone (may be repeated): jax-cpu, jax-gpu, numpy, c-scalar, c-fast, cost-model; or none,
+for the errors alone. Left out: all that this machine has."""
+
+measure_options = together(
+    click.option("--samples", type=Number(), default=None, metavar="N", help="Samples: 1000000, or say 1e9."),
+    click.option(
+        "--sampling",
+        default="uniform",
+        show_default=True,
+        metavar="NAME",
+        help="Protocol: uniform, angle, cosine, in-plane, hemisphere, sobol.",
+    ),
+    click.option("--exhaustive", is_flag=True, help="Every number of --dtype in the domain, its ends included."),
+    click.option("--dtype", default="float32", show_default=True, metavar="float16|32|64", help="Type under test."),
+    click.option(
+        "--backend",
+        "backends",
+        multiple=True,
+        metavar="NAME",
+        help=BACKEND_HELP,
+    ),
+    click.option("--peers", is_flag=True, help="Beside the fit: table, AAA, polynomial of equal cost, Pade."),
+)
+
+several_options = together(
+    click.option("--coordinator", metavar="HOST:PORT", help="Address of process 0, where several measure together."),
+    click.option("--processes", type=int, metavar="N", help="How many processes there are."),
+    click.option("--process", type=int, metavar="K", help="Which of them this is, from 0."),
+)
+
+
+@click.command(short_help="Measure the error and speed of a fit.", context_settings=WORDS, epilog=EXPRESSION_HELP)
+@problem_options
+@measure_options
+@several_options
+@click.option("--resume", is_flag=True, help="Go on from the rows that --out FILE holds.")
+@click.option("--against", type=click.Path(), metavar="FILE", help="Compare with older rows: what got worse. Exit 1.")
+@click.option("--format", "format_", default="text", type=click.Choice(["text", "json"]), show_default=True)
+def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...], **options: Any) -> int:
+    """Measure eps and gamma of the fit of PROBLEM, against its target and its references.
+
+    \b
+    ratfit bench eq12
+    ratfit bench eq19 --set m=0.2 --peers               beside a table, AAA, a polynomial and Pade
+    ratfit bench eq19 --set m=random --sampling hemisphere
+    ratfit bench eq12 --exhaustive --backend none       every float32 of the domain, no timing
+    ratfit bench eq21 --samples 1e9 --out rows.jsonl    interrupt it; --resume goes on
+    ratfit bench eq21 --out new.jsonl --against rows.jsonl
+    ratfit bench "exp(x)" --on 0 1 --form 2/2 --value 0 --derivative 0 --derivative "0;order=2" --value 1 --derivative 1
+    On several machines, K = 0 and 1:
+    ratfit bench eq12 --samples 1e10 --coordinator 10.0.0.1:9876 --processes 2 --process K
+    """
+    found, shown = read_problem(problem, degree, options)
+    values = settings_of(settings)
+    names = [p.name for p in found.parameters]
+    found = found.with_choice({n: v for n, v in values.items() if n not in names})
+    old = _old_rows(options["against"])
+    _check_measuring(options)
+    fit = derived(found, options)
+    if fit.expression is None:
+        print(rendered(fit, shown, options["format_"]))
+        return 1
+    _begin(options)
+    return _finish(_run(fit, shown, {n: v for n, v in values.items() if n in names}, options), old, options)
+
+
+def _check_measuring(options: dict[str, Any]) -> None:
+    """What can be refused before any work is done."""
+    if options["resume"] and options["out"] is None:
+        raise RatfitError("--resume needs the file to go on from: --out FILE")
+    if options["exhaustive"] and options["samples"] is not None:
+        raise RatfitError("--exhaustive takes every number there is: leave --samples out")
+    if options["exhaustive"] and options["sampling"] != "uniform":
+        raise RatfitError("--exhaustive is a sampling of its own: leave --sampling out")
+    several = [options[name] is not None for name in ("coordinator", "processes", "process")]
+    if any(several) and not all(several):
+        raise RatfitError("several processes need all of --coordinator HOST:PORT, --processes N and --process K")
+
+
+def _begin(options: dict[str, Any]) -> None:
+    """Sees to the devices before JAX computes anything."""
+    from ratfit._error.devices import join, use_all_cores
+
+    use_all_cores()
+    if options["coordinator"] is not None:
+        join(options["coordinator"], options["processes"], options["process"])
+
+
+def _run(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str, Any]) -> Run:
+    from ratfit._bench import Measuring
+    from ratfit._sampling import check_protocol
+    from ratfit.report.bench import Run
+
+    samples = None if options["exhaustive"] else options["samples"] or 1_000_000
+    sampling = "exhaustive" if options["exhaustive"] else options["sampling"]
+    check_protocol(sampling, samples, options["seed"], options["dtype"])
+    how = Measuring(samples, options["seed"], sampling, options["dtype"])
+    found = _jobs(fit, shown, given, options["peers"])
+    about = _about(fit, shown, _command(options))
+    return Run(found, how, _backends(options["backends"]), about, options["out"], options["resume"])
+
+
+def _jobs(fit: Fit, shown: Card | None, given: dict[str, str], with_peers: bool) -> list[Job]:
+    from ratfit._bench import jobs, peer_jobs
+
+    values = {n: v if v == "random" else float(exact(v, f"--set {n}")) for n, v in given.items()}
+    settings: Sequence[Any] = [values] if values else list(shown.settings) if shown else []
+    found = jobs(fit, settings)
+    if not with_peers:
+        return found
+    peers, missing = peer_jobs(found)
+    for name, reason in missing:
+        print(f"ratfit: no {name}: {reason}", file=sys.stderr)
+    return [*found, *peers]
+
+
+def _backends(asked: tuple[str, ...]) -> tuple[str, ...]:
+    from ratfit._speed import available
+    from ratfit._speed.backends import backend_named
+
+    if asked == ("none",):
+        return ()
+    for name in asked:
+        backend_named(name)
+    return tuple(dict.fromkeys(asked)) or available()
+
+
+def _about(fit: Fit, shown: Card | None, command: str) -> Any:
+    from ratfit.report.text import published_object
+
+    about = {"fit": fit.to_json_object(), "command": command, "published": published_object(fit, shown)}
+    return lambda job: about
+
+
+def _command(options: dict[str, Any]) -> str:
+    """The words of this command, less those that say where its rows go and who else takes part."""
+    import shlex
+
+    aside = ("--out", "--against", "--coordinator", "--processes", "--process", "--format")
+    words, kept = iter(sys.argv[1:]), []
+    for word in words:
+        name, joined, _ = word.partition("=")
+        if name in aside and not joined:
+            next(words, None)
+        elif name not in (*aside, "--resume"):
+            kept.append(word)
+    return shlex.join(["ratfit", *kept])
+
+
+def _old_rows(path: str | None) -> list[Any] | None:
+    from ratfit._record import read_rows
+
+    if path is None:
+        return None
+    if not Path(path).exists():
+        raise RatfitError(f"--against {path}: there is no such file; name one that bench --out has written")
+    return read_rows(path)
+
+
+def _finish(run: Run, old: list[Any] | None, options: dict[str, Any]) -> int:
+    """Measures, prints, compares; the exit status."""
+    from ratfit._error.devices import is_first
+    from ratfit._record import compare, contract, machine
+    from ratfit.report.against import against_text, got_worse
+    from ratfit.report.bench import rows, tables
+
+    found = list(rows(run))
+    if not is_first():
+        return 0
+    if options["format_"] == "json":
+        made = {"machine": machine(), "rows": [contract(row) for row in found]}
+        print(json.dumps(made, indent=2, ensure_ascii=False, allow_nan=False))
+    else:
+        print(tables(found))
+    if old is None:
+        return 0
+    changes = compare(old, found)
+    print(against_text(changes), file=sys.stderr if options["format_"] == "json" else sys.stdout)
+    return 1 if got_worse(changes) else 0
+
+
+@click.command(short_help="Measured rows as a page.")
+@click.argument("files", nargs=-1, type=click.Path())
+@click.option("--out", default="ratfit-report", show_default=True, metavar="FOLDER", help="Where the pages go.")
+def report(files: tuple[str, ...], out: str) -> int:
+    """Turn the rows of FILES, written by `ratfit bench --out`, into one Markdown page and one HTML page.
+
+    \b
+    ratfit bench eq19 --peers --out rows.jsonl && ratfit report rows.jsonl
+    ratfit report here.jsonl there.jsonl --out pages       rows of two machines
+    """
+    from ratfit.report.records import run_report
+
+    if not files:
+        raise RatfitError("which rows? name one or more files that bench --out has written")
+    return run_report(files, out)
+
+
+@click.command(short_help="The 1994 paper, derived and measured.")
+@click.option("--samples", type=Number(), default=1_000_000, show_default=True, metavar="N", help="Number of samples.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the samples.")
+@click.option(
+    "--out",
+    type=click.Path(),
+    default="ratfit-paper",
+    show_default=True,
+    metavar="FOLDER",
+    help="Where page and record go.",
+)
+@click.option("--format", "format_", default="text", type=click.Choice(["text", "json"]), show_default=True)
+def paper(samples: int, seed: int, out: str, format_: str) -> int:
+    """Re-derive Eqs. 12, 15, 19 and 21 of the 1994 paper, and measure each beside its printed figures.
+
+    \b
+    ratfit paper                        prints the tables; writes paper.md and paper.json to ./ratfit-paper
+    ratfit paper --samples 100000       sooner, less precise
+    """
+    from ratfit.report.paper import run_paper
+
+    return run_paper(samples, seed, Path(out), format_)

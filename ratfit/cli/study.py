@@ -1,0 +1,89 @@
+"""`ratfit study`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ratfit._inline import Words, target_of_words
+from ratfit._parse import RatfitError
+from ratfit._target import Target
+from ratfit.cli.options import WORDS, one_word, positive, write
+from ratfit.gallery import card, find_problem, is_known
+from ratfit.report.progress import waiting
+
+TARGET_HELP = """TARGET is looked up as a gallery name (`ratfit gallery`), then as a problem file (it ends in .toml or
+exists), then read as an expression that --on completes."""
+
+PICTURES = ("svg", "pdf", "png")
+
+
+@click.command(short_help="Say what is exact about a function.", context_settings=WORDS, epilog=TARGET_HELP)
+@click.argument("target", nargs=-1, type=click.UNPROCESSED)
+@click.option("--on", nargs=2, metavar="LOW HIGH", help="The domain of an expression; oo and -oo are ends too.")
+@click.option("--variable", metavar="NAME", help="The variable, where the expression leaves it open.")
+@click.option("--parameter", multiple=True, metavar="m=LOW:HIGH", help="A symbol that stays in the answer.")
+@click.option("--let", multiple=True, metavar="h=EXPR", help="An abbreviation.")
+@click.option("--plot", metavar="FILE", help="A picture with the conditions marked: .svg, .pdf or .png.")
+@click.option("--format", "format_", default="text", type=click.Choice(["text", "json", "toml"]), show_default=True)
+@click.option("--out", type=click.Path(), metavar="FILE", help="Write the result there.")
+@click.option("--timeout", type=float, default=30.0, show_default=True, metavar="SECONDS", help="Stop after that.")
+def study(target: tuple[str, ...], **options: Any) -> int:
+    """Say what is exact about TARGET, and print every fact as a kernel condition that `ratfit derive` takes.
+
+    \b
+    ratfit study eq19
+    ratfit study "sin(x)" --on 0 pi/2
+    ratfit study "tanh(x)" --on 0 oo --plot tanh.svg
+    ratfit study "exp(-k*x)" --on 0 oo --parameter k=1/2:2 --format toml > my.toml
+    """
+    from ratfit._study import study as study_target
+    from ratfit.report.study import study_json, study_text, study_toml
+
+    picture = _picture_format(options["plot"])
+    studied, seconds = _read_target(target, options), positive(options["timeout"])
+    with waiting(f"studying {studied.expression}, for at most {seconds:g} s (Ctrl-C stops)"):
+        found = study_target(studied, timeout=seconds)
+    if picture:
+        _write_picture(found, options["plot"], picture)
+    written = {"text": study_text, "json": study_json, "toml": study_toml}[options["format_"]](found)
+    write(written.rstrip("\n"), options["out"])
+    return 0
+
+
+def _read_target(words: tuple[str, ...], options: dict[str, Any]) -> Target:
+    """The target that the words of `study` name: of a card, of a file, or an expression with its domain."""
+    from ratfit._study.study import target_of
+
+    text = one_word(words)
+    stated = Words(**{k: options[k] for k in ("on", "variable", "parameter", "let")})
+    if is_known(text) and stated.given():
+        raise RatfitError(f"--{stated.given()[0]} completes an expression; {text} is a whole problem, leave it out")
+    if is_known(text):
+        return target_of(find_problem(text))
+    if not stated.given() and text.replace("-", "").replace("_", "").isalnum():
+        return target_of(card(text).problem)  # a lone word that is no name: the error offers the nearest names
+    return target_of_words(text, stated)
+
+
+def _picture_format(file: str | None) -> str:
+    """The format that the suffix of a picture asks for, before any work is done for it."""
+    if file is None:
+        return ""
+    suffix = Path(file).suffix.lower().removeprefix(".")
+    if suffix not in PICTURES:
+        raise RatfitError(f"--plot {file}: name the picture something.svg, something.pdf or something.png")
+    return suffix
+
+
+def _write_picture(found: Any, file: str, format_: str) -> None:
+    from io import BytesIO
+
+    from ratfit._record import write_bytes
+    from ratfit.plot import plot_study
+
+    drawn = BytesIO()
+    plot_study(found).figure.savefig(drawn, format=format_, dpi=200)  # type: ignore[union-attr]  # a Figure of its own
+    write_bytes(file, drawn.getvalue())

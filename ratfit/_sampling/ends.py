@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import mpmath
 
 from ratfit._parse import RatfitError
-from ratfit._sampling.exhaustive import nearest_number, place_of
+from ratfit._sampling.exhaustive import nearest_number, next_number, place_of
 from ratfit._setting import Setting
 
 
@@ -56,11 +56,8 @@ def _inside(low: float, high: float, dtype: str) -> tuple[float, float]:
     tiny = float(np.finfo(dtype).smallest_normal)
     first, last = (nearest_number(end, dtype) for end in (low, high))
     # Compared as float64: NumPy would round a Python float to the narrower dtype first.
-    if float(first) <= low:
-        first = np.nextafter(first, first.dtype.type(math.inf))
-    if float(last) >= high:
-        last = np.nextafter(last, last.dtype.type(-math.inf))
-    first, last = float(first), float(last)
+    first = float(next_number(first, True) if float(first) <= low else first)
+    last = float(next_number(last, False) if float(last) >= high else last)
     if 0 < abs(first) < tiny:
         first = tiny if first > 0 else 0.0
     if 0 < abs(last) < tiny:

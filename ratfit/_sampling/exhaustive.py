@@ -39,11 +39,9 @@ def check_exhaustive(dtype: str) -> None:
 
 def place_of(end: float, dtype: str, upwards: bool) -> int:
     """The place of the first finite number of the dtype at or beyond an end, upwards or downwards; a 0 means both."""
-    import numpy as np
-
     number = nearest_number(end, dtype)
     if (float(number) < end) if upwards else (float(number) > end):
-        number = np.nextafter(number, number.dtype.type(math.inf if upwards else -math.inf))
+        number = next_number(number, upwards)
     bits = int(abs(number).view(f"u{number.itemsize}"))
     if number == 0:
         return -1 if upwards else 0
@@ -56,6 +54,14 @@ def nearest_number(value: float, dtype: str) -> Any:
 
     with np.errstate(over="ignore"):
         return np.dtype(dtype).type(value)
+
+
+def next_number(number: Any, upwards: bool) -> Any:
+    """The neighbour of a NumPy scalar in its own dtype."""
+    import numpy as np
+
+    with np.errstate(over="ignore"):
+        return np.nextafter(number, number.dtype.type(math.inf if upwards else -math.inf))
 
 
 def number_at(places: Any, dtype: str) -> Any:

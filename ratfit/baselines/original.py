@@ -107,7 +107,7 @@ class Original:
 
 
 def original_of(place: Setting) -> Original:
-    """The exact function of a setting. **Fails** with `RatfitError` where a parameter is random: it is no one function."""
+    """The exact function of a setting. **Fails** with `RatfitError` where a parameter is random."""
     if place.ranges:
         moving = ", ".join(symbol.name for symbol in place.ranges)
         raise RatfitError(f"a peer is made at one value of each parameter: give {moving} a number")

@@ -88,7 +88,12 @@ def degrees(fit: Fit) -> tuple[int, int]:
     x = fit.problem.variable
     above, below = sp.fraction(sp.together(fit.chosen))
     if above.is_polynomial(x) and below.is_polynomial(x):
-        return int(sp.degree(above, x)), int(sp.degree(below, x))
+        return _degree(above, x), _degree(below, x)
     shape = fit.problem.form.shape(x, ())
     count = len(shape.unknowns) - shape.homogeneous
     return count - 1 - (count - 1) // 2, (count - 1) // 2
+
+
+def _degree(polynomial: sp.Expr, x: sp.Symbol) -> int:
+    """The degree in x, that of zero too."""
+    return 0 if polynomial == 0 else int(sp.degree(polynomial, x))

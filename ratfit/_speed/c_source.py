@@ -1,8 +1,8 @@
 """A tape as C: one function a tape, with a loop that reads arrays and writes one.
 
 The tape is the only source of the text: operations come from the tables here, numbers are written as hexadecimal
-constants, and no name that a user gave enters it. Every operation means what it means in `_lower` on NumPy, nan included
-(as far as the flags of the compiler honour nan).
+constants, and no name that a user gave enters it. Every operation means what it means in `_lower` on NumPy, nan
+included, as far as the flags of the compiler honour nan.
 """
 
 from __future__ import annotations

@@ -78,7 +78,8 @@ def _expected(entrant: Entrant, contest: Contest) -> _Expected:
     own = exact if contest.dtype == "float64" else _evaluated(entrant, contest, contest.dtype)
     coarse = own if contest.dtype != "float64" else _evaluated(entrant, contest, "float32")
     parts, count = _parts(contest)
-    lost = _greatest(np.abs(coarse - exact), parts, count)
+    with np.errstate(invalid="ignore"):
+        lost = _greatest(np.abs(coarse - exact), parts, count)
     size = _greatest(np.abs(exact), parts, count)
     kind = np.finfo(contest.dtype)
     if contest.dtype == "float64":

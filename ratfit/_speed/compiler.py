@@ -7,6 +7,7 @@ import functools
 import os
 import shlex
 import shutil
+import signal
 import subprocess
 import tempfile
 from collections.abc import Sequence
@@ -75,15 +76,25 @@ def load(source: str, flags: tuple[str, ...], command: tuple[str, ...]) -> ctype
 
 
 def _run(command: Sequence[str]) -> str:
+    pipe = subprocess.PIPE
     try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=SECONDS, check=False)
-    except subprocess.TimeoutExpired:
-        raise RatfitError(f"{command[0]} took longer than {SECONDS} s: name another compiler in CC") from None
+        # In a session of its own: a compiler is a driver of other programs, which have to end with it.
+        process = subprocess.Popen(
+            command, stdout=pipe, stderr=pipe, text=True, errors="replace", start_new_session=True
+        )
     except OSError as refused:
         raise RatfitError(f"{command[0]} does not start ({refused}): name another compiler in CC") from None
-    if done.returncode:
-        raise RatfitError(f"{command[0]} failed: {_complaint(done.stderr)}")
-    return done.stdout
+    with process:
+        try:
+            output, complaints = process.communicate(timeout=SECONDS)
+        except subprocess.TimeoutExpired:
+            raise RatfitError(f"{command[0]} took longer than {SECONDS} s: name another compiler in CC") from None
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+    if process.returncode:
+        raise RatfitError(f"{command[0]} failed: {_complaint(complaints)}")
+    return output
 
 
 def _complaint(text: str) -> str:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ratfit._parse import RatfitError
 from ratfit._sampling import check_protocol
 from ratfit._setting import Setting, Value, setting
-from ratfit._speed.backends import BACKENDS, Backend, backend_named
+from ratfit._speed.backends import BACKENDS, backend_named
 from ratfit._speed.check import verdict
-from ratfit._speed.contest import Contest, contest, entrants
+from ratfit._speed.contest import Contest, Runs, contest, entrants
 from ratfit._speed.cost_model import weight
 from ratfit._speed.notes import floor_note, load, noise_note, size_note
 from ratfit._speed.rounds import race, ratio_interval
@@ -30,25 +30,25 @@ class SpeedMeasurement:
     a ratio of weights without an interval, and it has no seconds.
     """
 
-    exact_s: float | None
-    fit_s: float | None
-    floor_s: float | None
-    gamma: float | None
-    gamma_low: float | None
-    gamma_high: float | None
-    note: str
-    exact_times: tuple[float, ...]
-    fit_times: tuple[float, ...]
-    floor_times: tuple[float, ...]
     backend: str
-    flags: str  # XLA_FLAGS as they stood, or the compiler and its flags
+    regime: str
     samples: int
     seed: int
     dtype: str
     parameters: dict[str, Any]
     reference: str | None
-    regime: str
-    checked: bool | None  # whether the timed output is what the formulas mean; None where nothing ran
+    gamma: float | None = None
+    gamma_low: float | None = None
+    gamma_high: float | None = None
+    note: str = ""
+    exact_s: float | None = None
+    fit_s: float | None = None
+    floor_s: float | None = None
+    exact_times: tuple[float, ...] = ()
+    fit_times: tuple[float, ...] = ()
+    floor_times: tuple[float, ...] = ()
+    flags: str = ""  # XLA_FLAGS as they stood, or the compiler and its flags
+    checked: bool | None = None  # whether the timed output is what the formulas mean; None where nothing ran
 
 
 def measure_speed(
@@ -79,45 +79,37 @@ def measure_speed(
     if repeats is not None and repeats < 1:
         raise RatfitError(f"repeats = {repeats}: a whole number from 1 upwards is needed, or None")
     place, chosen = setting(fit, parameters, reference), backend_named(backend)
-    found = _modelled(place, dtype) if chosen.prepare is None else _timed(place, chosen, samples, seed, dtype, repeats)
-    return SpeedMeasurement(
-        **found, backend=backend, samples=samples, seed=seed, dtype=dtype, parameters=place.parameters,
-        reference=reference, regime=BACKENDS[backend],
-    )  # fmt: skip
+    asked = SpeedMeasurement(backend, BACKENDS[backend], samples, seed, dtype, place.parameters, reference)
+    if chosen.prepare is None:
+        return _modelled(asked, place)
+    waiting, three = load(), contest(place, samples, seed, dtype)
+    return _timed(asked, three, chosen.prepare(three), waiting, repeats)
 
 
-def _modelled(place: Setting, dtype: str) -> dict[str, Any]:
+def _modelled(asked: SpeedMeasurement, place: Setting) -> SpeedMeasurement:
     """What the cost model says: a fit that costs nothing has no gamma."""
-    exact, fit, _ = (weight(entrant.steps, dtype) for entrant in entrants(place))
-    nothing = "" if fit else "; a fit without operations has no gamma"
-    return {
-        "exact_s": None, "fit_s": None, "floor_s": None, "gamma": exact / fit if fit else None, "gamma_low": None,
-        "gamma_high": None, "note": f"exact function {exact:g} additions, fit {fit:g}{nothing}", "exact_times": (),
-        "fit_times": (), "floor_times": (), "flags": "", "checked": None,
-    }  # fmt: skip
+    exact, fit, _ = (weight(entrant.steps, asked.dtype) for entrant in entrants(place))
+    note = f"exact function {exact:g} additions, fit {fit:g}"
+    if not fit:
+        return replace(asked, note=f"{note}: a fit without operations has no gamma")
+    return replace(asked, gamma=exact / fit, note=note)
 
 
 def _timed(
-    place: Setting, backend: Backend, samples: int, seed: int, dtype: str, repeats: int | None
-) -> dict[str, Any]:
-    """What a backend's rounds say, after a look at what they gave."""
-    assert backend.prepare is not None
-    waiting, three = load(), contest(place, samples, seed, dtype)
-    runs = backend.prepare(three)
+    asked: SpeedMeasurement, three: Contest, runs: Runs, waiting: float, repeats: int | None
+) -> SpeedMeasurement:
+    """What the rounds say, after a look at what was computed in them."""
     raced = race(runs, repeats)
     exact_s, fit_s, floor_s = map(statistics.median, raced.times)
     low, high = ratio_interval(*raced.times[:2])
     wrong, remark = _checked(three, raced.outputs, runs.caution)
-    notes = (
-        wrong, remark, floor_note(exact_s, fit_s, floor_s), noise_note(low, high, raced.times, waiting),
-        size_note(samples),
+    noise = noise_note(low, high, raced.times, waiting)
+    notes = (wrong, remark, floor_note(exact_s, fit_s, floor_s), noise, size_note(asked.samples))
+    timed = replace(
+        asked, exact_s=exact_s, fit_s=fit_s, floor_s=floor_s, exact_times=raced.times[0], fit_times=raced.times[1],
+        floor_times=raced.times[2], note="; ".join(filter(None, notes)), flags=runs.flags, checked=not wrong,
     )  # fmt: skip
-    ratios: tuple[float | None, ...] = (None, None, None) if wrong else (exact_s / fit_s, low, high)
-    return {
-        "exact_s": exact_s, "fit_s": fit_s, "floor_s": floor_s, **dict(zip(("gamma", "gamma_low", "gamma_high"), ratios, strict=True)),
-        "note": "; ".join(filter(None, notes)), "exact_times": raced.times[0], "fit_times": raced.times[1],
-        "floor_times": raced.times[2], "flags": runs.flags, "checked": not wrong,
-    }  # fmt: skip
+    return timed if wrong else replace(timed, gamma=exact_s / fit_s, gamma_low=low, gamma_high=high)
 
 
 def _checked(three: Contest, outputs: tuple[Any, ...], caution: str) -> tuple[str, str]:

@@ -19,8 +19,8 @@ ZERO = mpmath.mpf("1e-20")
 def approximant(series: Sequence[Fraction], above: int, below: int) -> tuple[Polynomial, Polynomial] | None:
     """Numerator and denominator of the [above/below] Pade approximant; None where it is zero.
 
-    In a block of the Pade table the approximants are one and the same: the degrees fall until the equations have one
-    solution (gonnet2013).
+    In a block of the Pade table the approximants are one and the same, and beyond 20 digits they cannot be told apart:
+    the degrees fall until the equations have one solution (gonnet2013).
 
     **Arguments:** the Taylor coefficients 0 to `above + below`, not all of them zero.
     """

@@ -18,6 +18,10 @@ WORSE = 4
 """How many times its error as written an arrangement may have before another way of writing is tried."""
 
 
+ROUNDING = 2.0**-22
+"""Errors below four roundings of float32 are one and the same: they say nothing of the way of writing."""
+
+
 @dataclass(frozen=True)
 class Peer:
     """What a fit must beat, at the values of the parameters that it was made for: it is measured like a fit.
@@ -57,7 +61,7 @@ def stablest(formulas: Sequence[sp.Expr], original: Original) -> sp.Expr:
     It is the schedule of a formula that is measured, and that may round worse than the formula as written: such a way
     of writing is passed over.
     """
-    errors = [original.float32_error(formula) for formula in formulas]
+    errors = [max(original.float32_error(formula), ROUNDING) for formula in formulas]
     arranged: list[float] = []
     ranked = sorted(range(len(formulas)), key=errors.__getitem__)
     for place in ranked:

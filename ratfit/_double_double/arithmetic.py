@@ -21,13 +21,16 @@ Array = Any  # a NumPy array of float64, or a scalar that broadcasts with one
 _HALF_OF_LOWER = np.int64(1 << 26)
 _UPPER_BITS = np.int64(-(1 << 27))
 
+# A product of this size has an error that float64 still holds; smaller numbers are raised before they are divided.
+_SMALL, _RAISE = 2.0**-960, 2.0**200
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DoubleDouble:
     """The number `high + low`, where `high` is the float64 nearest to it; `low` is 0 where `high` is not finite.
 
-    The operators take another `DoubleDouble` or an exact float64. Relative errors: sum and difference 3 u**2,
-    product 7 u**2, quotient 15 u**2, with a float64 operand 2 u**2, 3 u**2 and 10 u**2.
+    The operators take another `DoubleDouble` or an exact float64. Bounds of their relative errors: sum and difference
+    3 u**2, product 7 u**2, quotient 15 u**2; an integer power n, by repeated products, 7 n u**2.
     """
 
     high: Array
@@ -50,11 +53,11 @@ class DoubleDouble:
         return settled(c_h, c_l + self.low * other, c_h)
 
     def __truediv__(self, other: DoubleDouble | Array) -> DoubleDouble:
-        divisor, rest = (other.high, other.low) if isinstance(other, DoubleDouble) else (other, 0.0)
-        quotient = self.high / divisor
-        c_h, c_l = two_product(quotient, divisor)
-        # The first difference is exact: the quotient is within one rounding of the true one.
-        return settled(quotient, ((self.high - c_h) - c_l + (self.low - quotient * rest)) / divisor, quotient)
+        size = np.abs(self.high)
+        if size.min() >= _SMALL:
+            return _quotient(self, other)
+        raised = np.where(size < _SMALL, _RAISE, 1.0)
+        return _quotient(self.scaled(raised), other).scaled(1 / raised)
 
     def __neg__(self) -> DoubleDouble:
         return DoubleDouble(-self.high, -self.low)
@@ -88,21 +91,22 @@ def two_sum(a: Array, b: Array) -> tuple[Array, Array]:
     return s, (a - (s - b_)) + (b - b_)
 
 
-def two_product(a: Array, b: Array) -> tuple[Array, Array]:
-    """The rounded product and its rounding error, exact (dekker1971), the factors split by their bits.
-
-    The split into 26 bits and 26 bits with a sign rounds the significand's integer: that takes fewer operations than
-    Veltkamp's, and does not overflow.
-    """
+def two_product(a: Array, b: Array, parts_of_b: tuple[Array, Array] | None = None) -> tuple[Array, Array]:
+    """The rounded product and its rounding error, exact (dekker1971); `parts_of_b` is `split(b)` where it is known."""
     p = a * b
-    a_h, b_h = _upper(a), _upper(b)
-    a_l, b_l = a - a_h, b - b_h
+    (a_h, a_l), (b_h, b_l) = split(a), parts_of_b or split(b)
     return p, ((a_h * b_h - p) + a_h * b_l + a_l * b_h) + a_l * b_l
 
 
-def _upper(a: Array) -> Array:
+def split(a: Array) -> tuple[Array, Array]:
+    """A float64 as a sum of two, whose products with another's parts are exact.
+
+    26 bits and 26 bits with a sign, by rounding the significand as an integer: fewer operations than Veltkamp's, and
+    no overflow.
+    """
     bits = np.float64(a).view(np.int64) if isinstance(a, float) else a.view(np.int64)
-    return ((bits + _HALF_OF_LOWER) & _UPPER_BITS).view(np.float64)
+    upper = ((bits + _HALF_OF_LOWER) & _UPPER_BITS).view(np.float64)
+    return upper, a - upper
 
 
 def settled(high: Array, low: Array, plain: Array) -> DoubleDouble:
@@ -130,18 +134,31 @@ def _sum(x: DoubleDouble, y_h: Array, y_l: Array) -> DoubleDouble:
     return settled(v_h, t_l + v_l, s_h)
 
 
+def _quotient(x: DoubleDouble, y: DoubleDouble | Array) -> DoubleDouble:
+    """joldes2017, Algorithm 17, DWDivDW2, for an x whose rounding errors float64 holds."""
+    divisor, rest = (y.high, y.low) if isinstance(y, DoubleDouble) else (y, 0.0)
+    quotient = x.high / divisor
+    c_h, c_l = two_product(quotient, divisor)
+    # The first difference is exact: the quotient is within one rounding of the true one.
+    return settled(quotient, ((x.high - c_h) - c_l + (x.low - quotient * rest)) / divisor, quotient)
+
+
 def square_root(x: DoubleDouble) -> DoubleDouble:
     """One step of Newton from float64's root (hida2001, Sec. 3.5): relative error 4 u**2; nan below 0."""
+    raised = np.where(x.high < _SMALL, _RAISE, 1.0)
+    x = x.scaled(raised)
     s = np.sqrt(x.high)
     p, e = two_product(s, s)
-    return settled(s, ((x.high - p) - e + x.low) / (2 * s), s)
+    return settled(s, ((x.high - p) - e + x.low) / (2 * s), s).scaled(1 / np.sqrt(raised))
 
 
 def cube_root(x: DoubleDouble) -> DoubleDouble:
-    """One step of Newton from float64's root: relative error 16 u**2; nan below 0, as `x**(1/3)` is complex there."""
+    """One step of Newton from float64's root: relative error 8 u**2; nan below 0, as `x**(1/3)` is complex there."""
+    small = x.high < _SMALL
+    x = x.scaled(np.where(small, 2.0**240, 1.0))
     r = np.where(x.high >= 0, np.cbrt(x.high), np.nan)
     defect = x - whole(r) * r * r
-    return settled(r, defect.high / (3 * r * r), r)
+    return settled(r, defect.high / (3 * r * r), r).scaled(np.where(small, 2.0**-80, 1.0))
 
 
 def select(condition: Array, chosen: DoubleDouble, other: DoubleDouble) -> DoubleDouble:

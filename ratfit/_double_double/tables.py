@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 import mpmath
 import numpy as np
 
-from ratfit._double_double.arithmetic import Array, DoubleDouble
+from ratfit._double_double.arithmetic import Array, DoubleDouble, split, two_product
 
 DIGITS = 80
 """Working digits of every table, which is rounded once to its double-doubles."""
@@ -33,14 +33,21 @@ def limbs(value: mpmath.mpf, bits: int, count: int) -> list[float]:
 def series(x: DoubleDouble, coefficients: Sequence[DoubleDouble], exact: int) -> DoubleDouble:
     """The polynomial with these coefficients, constant first, by Horner's rule.
 
-    From place `exact` on it is taken in float64: for terms below 2**-53 of the sum.
+    From place `exact` on it is taken in float64: for terms below 2**-53 of the sum. Each coefficient must exceed what
+    is added to it, so that the cheapest sum of double-doubles is accurate (dekker1971's add2).
     """
     tail: Array = 0.0
     for coefficient in reversed(coefficients[exact:]):
         tail = (tail + coefficient.high) * x.high
     total = coefficients[exact - 1] + tail
-    for coefficient in reversed(coefficients[: exact - 1]):
-        total = total * x + coefficient
+    factor = split(x.high)
+    for c in reversed(coefficients[: exact - 1]):
+        p, e = two_product(total.high, x.high, factor)
+        e += total.high * x.low + total.low * x.high
+        s = c.high + p
+        r = (p - (s - c.high)) + (e + c.low)
+        high = s + r
+        total = DoubleDouble(high, r - (high - s))
     return total
 
 

@@ -79,7 +79,7 @@ def test_the_parameters_and_the_directions_have_streams_of_their_own():
 
 def test_points_depend_on_neither_shape_nor_chunk_nor_kernel():
     """Nor on what a compiler makes of them: without jit every operation is rounded by itself."""
-    counters, seed = np.arange(600, dtype=np.uint64), np.uint64(5)
+    counters, seed = np.arange(774, dtype=np.uint64), np.uint64(5)
 
     def points(counters):
         ranges = {name: [row, row] if name == "sobol" else [row] for name in CARRIERS}
@@ -87,14 +87,12 @@ def test_points_depend_on_neither_shape_nor_chunk_nor_kernel():
 
     with jax.enable_x64(True):
         row = ends(0, 1, "float64")
-        whole = jax.jit(points)(counters)
-        square = counters[:6].reshape(2, 3)
-        chunks = jax.jit(lambda: jax.lax.map(lambda start: points(start + square), counters[::6]))()
+        square = counters[:129].reshape(3, 43)  # so that vectors of a processor do not divide it
+        compiled = jax.jit(lambda: jax.lax.map(lambda start: points(start + square), counters[::129]))()
         with jax.disable_jit():
             alone = points(jax.numpy.asarray(counters))
-    for place, expected in enumerate(whole):
-        for other in (chunks, alone):
-            assert (np.ravel(other[place]) == np.asarray(expected)).all(), [*CARRIERS, "parameter"][place]
+    for place, (expected, found) in enumerate(zip(alone, compiled, strict=True)):
+        assert (np.ravel(found) == np.asarray(expected)).all(), [*CARRIERS, "parameter"][place]
 
 
 def test_uniform_points_are_the_same_in_every_kernel_of_a_machine():
@@ -191,13 +189,13 @@ CUMULATIVE = [
 
 @pytest.mark.parametrize(("sampling", "domain", "cumulative"), CUMULATIVE, ids=lambda value: str(value)[:12])
 def test_points_have_the_density_of_their_protocol(sampling, domain, cumulative):
-    points, parameter = drawn(sampling, [domain, (0, 1)], np.arange(MILLION), 1)
+    points, parameter = drawn(sampling, [domain, (0, 1)], np.arange(MILLION), 1, jit=False)
     counts, _ = np.histogram(cumulative(points), 100, (-1e-12, 1 + 1e-12))
     assert counts.sum() == MILLION
     assert 60 < ((counts - MILLION / 100) ** 2 / (MILLION / 100)).sum() < 150  # chi-squared, 99 degrees of freedom
     assert abs(np.corrcoef(points[:-1], points[1:])[0, 1]) < 0.005
-    joint, _, _ = np.histogram2d(cumulative(points), parameter, 10, [(-1e-12, 1 + 1e-12), (0, 1)])
-    assert 60 < ((joint - MILLION / 100) ** 2 / (MILLION / 100)).sum() < 150
+    parts = np.minimum(cumulative(points[:100_000]) * 10, 9).astype(int) * 10 + (parameter[:100_000] * 10).astype(int)
+    assert 60 < ((np.bincount(parts) - 1000) ** 2 / 1000).sum() < 150  # the parameter is independent of the point
 
 
 def test_sobol_has_the_digits_of_joe_and_kuo():
@@ -321,7 +319,7 @@ def halves(low, high):
 def test_exhaustive_is_every_half_in_order(domain):
     expected = halves(*domain)
     assert count(*domain, "float16") == len(expected)
-    if domain[0] < domain[1] and domain != (-1e-5, 1e-7):
+    if domain[0] < domain[1]:
         found = np.asarray(draw("exhaustive", *domain, 0, 0, len(expected) + 3, "float16"))
         assert (found[: len(expected)].view(np.uint16) == expected.view(np.uint16)).all()
         assert (found[len(expected) :] == expected[-1]).all()  # beyond the end the last number again

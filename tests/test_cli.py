@@ -1,6 +1,7 @@
 """The command line: its contract, and that bad input is one line and exit status 2."""
 
 import json
+import math
 import re
 
 import pytest
@@ -100,8 +101,23 @@ BAD = [
     (["derive", "eq19", "--out", "/nowhere/at/all.json"], "folder"),
     (["bench", "eq12", "--samples", "0"], "samples"),
     (["bench", "eq12", "--samples", "-5"], "samples"),
-    (["bench", "eq12", "--samples", "many"], "valid integer"),
-    (["bench", "eq12", "--dtype", "float16"], "float32"),
+    (["bench", "eq12", "--samples", "many"], "1e9"),
+    (["bench", "eq12", "--samples", "1.5"], "1e9"),
+    (["bench", "eq12", "--samples", "1e-3"], "1e9"),
+    (["bench", "eq12", "--samples", "1e99999999"], "1e9"),
+    (["bench", "eq12", "--dtype", "float8"], "float32"),
+    (["bench", "eq12", "--exhaustive", "--samples", "5"], "--samples"),
+    (["bench", "eq12", "--exhaustive", "--sampling", "angle"], "--sampling"),
+    (["bench", "eq12", "--exhaustive", "--dtype", "float64"], "float32"),
+    (["bench", "eq19", "--exhaustive", "--set", "m=random"], "exhaustive"),
+    (["bench", "eq12", "--sampling", "hemisphere"], "[0, 1]"),
+    (["bench", "eq19", "--set", "m=rondom"], "rondom"),
+    (["bench", "eq12", "--against", "/no/such/rows.jsonl"], "no such file"),
+    (["bench", "eq12", "--process", "1"], "--coordinator"),
+    (["bench", "eq12", "--coordinator", "nowhere", "--processes", "2", "--process", "0"], "10.0.0.1"),
+    (["bench", "eq12", "--coordinator", "localhost:1", "--processes", "2", "--process", "2"], "from 0 to 1"),
+    (["report"], "which rows"),
+    (["report", "/no/such/rows.jsonl"], "no such file"),
     (["bench", "eq12", "--sampling", "unifrom"], "uniform"),
     (["bench", "eq12", "--backend", "abacus"], "jax-cpu"),
     (["bench", "eq19", "--set", "m=3"], "range"),
@@ -352,25 +368,64 @@ ROW += ["worst", "exact_s", "fit_s", "floor_s", "gamma", "gamma_low", "gamma_hig
 
 
 def test_bench_json_keeps_the_contract(run):
-    status, out, _ = run("bench", "eq12", "--samples", "1000", "--format", "json")
+    status, out, _ = run("bench", "eq12", "--samples", "1000", "--format", "json", "--backend", "cost-model")
     found = json.loads(out)
     assert status == 0 and list(found) == ["machine", "rows"]
     (row,) = found["rows"]
     assert list(row) == ROW and list(row["worst"]) == ["definition", "at"]
     assert 0.01 < row["epsilon"]["peak_mean"] < 0.02
+    assert (row["backend"], row["exact_s"], row["gamma"] > 1) == ("cost-model", None, True)
 
 
 def test_bench_resumes_from_its_file(run, tmp_path):
     path = tmp_path / "rows.jsonl"
     arguments = ["bench", "eq19", "--samples", "1000", "--set", "m=0.2", "--out", str(path), "--format", "json"]
+    arguments += ["--backend", "cost-model"]
     first = json.loads(run(*arguments)[1])["rows"]
     lines = path.read_text().splitlines()
     assert len(lines) == 3  # the target and two references
     path.write_text("\n".join(lines[:2]) + "\n" + lines[2][:40])  # interrupted while the third was written
     again = json.loads(run(*arguments, "--resume")[1])["rows"]
-    assert again[:2] == first[:2]
-    assert again[2]["epsilon"] == first[2]["epsilon"]
+    assert again == first
     assert len(path.read_text().splitlines()) == 3
+    status, _, told = run(*arguments, "--resume", "--seed", "1")
+    assert status == 2 and "seed 0" in told and "another --out" in told
+
+
+def test_bench_compares_with_older_rows(run, tmp_path):
+    path = tmp_path / "rows.jsonl"
+    arguments = ["bench", "eq12", "--samples", "1000", "--backend", "none"]
+    assert run(*arguments, "--out", str(path))[0] == 0
+    status, out, _ = run(*arguments, "--against", str(path))
+    assert status == 0 and "0 worse" in out
+    row = json.loads(path.read_text())
+    row["epsilon"]["peak_mean"] /= 2
+    path.write_text(json.dumps(row) + "\n")
+    status, out, _ = run(*arguments, "--against", str(path))
+    assert status == 1 and "peak_mean" in out and "+100 %" in out
+
+
+def test_bench_draws_parameters_and_shows_peers(run):
+    status, out, _ = run("bench", "eq19", "--samples", "1000", "--set", "m=random", "--backend", "none")
+    assert status == 0 and "m=0.01..0.5" in out
+    arguments = ["bench", "eq19", "--samples", "1000", "--set", "m=0.2", "--peers", "--backend", "cost-model"]
+    status, out, _ = run(*arguments)
+    assert status == 0 and all(f"smith~{peer}" in out for peer in ("table", "polynomial", "pade"))
+
+
+def test_bench_measures_every_number_there_is(run):
+    status, out, _ = run("bench", "eq12", "--exhaustive", "--dtype", "float16", "--backend", "none", "--format", "json")
+    (row,) = json.loads(out)["rows"]
+    assert status == 0 and row["samples"] == 2 + 15 * 1024 + math.floor((math.pi / 2 - 1) * 1024)  # two zeros; to pi/2
+    assert "f(0) == 0 bit for bit" in row["note"]
+
+
+def test_report_makes_pages_of_rows(run, tmp_path):
+    rows, pages = tmp_path / "rows.jsonl", tmp_path / "pages"
+    assert run("bench", "eq12", "--samples", "1000", "--backend", "cost-model", "--out", str(rows))[0] == 0
+    status, out, _ = run("report", str(rows), "--out", str(pages))
+    assert status == 0 and "report.html" in out
+    assert {"report.html", "report.md"} <= {page.name for page in pages.iterdir()}
 
 
 def test_paper_writes_its_page_and_record(run, tmp_path):
@@ -383,7 +438,7 @@ def test_paper_writes_its_page_and_record(run, tmp_path):
     assert all(f"## Eq. {n}" in page for n in (12, 15, 19, 21))
 
 
-@pytest.mark.parametrize("command", ["derive", "bench", "paper", "gallery", "init", "check"])
+@pytest.mark.parametrize("command", ["derive", "bench", "report", "paper", "gallery", "init", "check"])
 def test_help_has_examples(run, command):
     status, out, _ = run(command, "--help")
     assert status == 0 and re.search(rf"^ +ratfit {command}", out, re.MULTILINE)

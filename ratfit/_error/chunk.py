@@ -8,9 +8,11 @@ same numbers whichever device makes them.
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from ratfit._double_double import double_double
 from ratfit._kernel import Program, kernel
 from ratfit._sampling import drawing
 
@@ -24,7 +26,8 @@ ROWS, GROUP = CHUNK // LANES, 8
 """Rows of a chunk; and those of them that a lane adds up plainly before it adds their sum with its rounding error."""
 
 # What is counted, added up, and looked for the greatest and the least of.
-COUNTS = ("finite", "nonzero", "nan_fit", "inf_fit", "nan_exact", "inf_exact")
+LEFT_OUT = ("nan_fit", "inf_fit", "nan_exact", "inf_exact")
+COUNTS = ("finite", "nonzero", "known", *LEFT_OUT)  # known: the exact value is finite, whatever the fit is
 SUMS = ("error", "absolute", "square", "relative_signed", "relative", "relative_square", "size", "ulp")
 EXTREMES = ("peak", "highest", "lowest")  # of |exact| and of exact
 WORST = ("absolute", "relative", "ulp")
@@ -45,6 +48,8 @@ class Pass:
     sampling: str
     dtype: str
     quantiles: bool
+    double_double: bool = False  # the arithmetic of the exact function; its constants are then the values of `fixed`
+    fixed: tuple[Any, ...] = ()
 
 
 def chunk_totals(what: Pass, start: Any, samples: Any, seed: Any, ends: Any, constants: Any) -> dict[str, Any]:
@@ -58,16 +63,16 @@ def chunk_totals(what: Pass, start: Any, samples: Any, seed: Any, ends: Any, con
 
     lane = jnp.arange(LANES, dtype=jnp.uint64)
 
-    def evaluated(number: Any) -> tuple[Any, Any]:
+    def evaluated(number: Any) -> tuple[Any, Any, Any]:
         counters = start + number * LANES + lane
         points = drawing(what.sampling, what.dtype)(seed, counters, ends)
         fit = kernel(what.fit, what.varying).function(*points, *constants[0])
-        exact = kernel(what.exact, what.varying).function(*(p.astype(jnp.float64) for p in points), *constants[1])
-        return fit, exact
+        return fit, *_exact(what, [point.astype(jnp.float64) for point in points], constants[1])
 
     def add(number: Any, carried: dict[str, Any]) -> dict[str, Any]:
         inside = start + number.astype(jnp.uint64) * LANES + lane < samples
-        return _added(carried, _errors(fits[number], exacts[number], inside, what.dtype), number)
+        low = lows if lows is None else lows[number]
+        return _added(carried, _errors(fits[number], exacts[number], low, inside, what.dtype), number)
 
     def add_group(group: Any, carried: tuple[dict[str, Any], dict[str, Any]]) -> tuple[dict[str, Any], dict[str, Any]]:
         rest, sums = carried
@@ -75,10 +80,41 @@ def chunk_totals(what: Pass, start: Any, samples: Any, seed: Any, ends: Any, con
         return rest, {name: _two_sum(sums[name], value) for name, value in rest.pop("sums").items()}
 
     # Two loops, because the end of a loop is what XLA respects: in one, each sum computes the functions for itself.
-    fits, exacts = jax.lax.map(evaluated, jnp.arange(ROWS, dtype=jnp.uint64))
+    fits, exacts, lows = jax.lax.map(evaluated, jnp.arange(ROWS, dtype=jnp.uint64))
     sums = {name: (value, value) for name, value in _zeros().items()}
     rest, sums = jax.lax.fori_loop(0, ROWS // GROUP, add_group, (_empty(what.quantiles), sums))
     return _folded(rest, sums, start)
+
+
+def _exact(what: Pass, points: list[Any], constants: Any) -> tuple[Any, Any]:
+    """The exact function, in float64 or in double-double, whose low part is None for float64.
+
+    The latter is NumPy's work: XLA contracts products and sums into one operation, which error terms do not survive.
+    """
+    import jax
+    import jax.numpy as jnp
+
+    if not what.double_double:
+        return kernel(what.exact, what.varying).function(*points, *constants), None
+    # The halves of the numbers cross as integers: in the thread of a callback JAX may be set to 32 bits.
+    given = jax.lax.bitcast_convert_type(
+        jnp.stack([jnp.broadcast_to(v, LANES) for v in (*points, *constants)]), jnp.uint32
+    )
+    halves = jax.ShapeDtypeStruct((2, LANES, 2), jnp.uint32)
+    found = jax.lax.bitcast_convert_type(jax.pure_callback(_in_double_double(what), halves, given), jnp.float64)
+    return found[0], found[1]
+
+
+def _in_double_double(what: Pass) -> Callable[[Any], Any]:
+    run = double_double(what.exact.result, (*what.varying, *what.fixed))
+
+    def halves(given: Any) -> Any:
+        import numpy as np
+
+        values = np.ascontiguousarray(given).view(np.float64)[..., 0]
+        return np.stack(run(*values)).view(np.uint32).reshape(2, LANES, 2)
+
+    return halves
 
 
 def _zeros() -> dict[str, Any]:
@@ -98,7 +134,7 @@ def _empty(quantiles: bool) -> dict[str, Any]:
     return nothing | (bins if quantiles else {})
 
 
-def _errors(fit: Any, exact: Any, inside: Any, dtype: str) -> dict[str, Any]:
+def _errors(fit: Any, exact: Any, low: Any, inside: Any, dtype: str) -> dict[str, Any]:
     """The errors of a row, sample by sample; 0 where one is not defined."""
     import jax.numpy as jnp
 
@@ -107,16 +143,16 @@ def _errors(fit: Any, exact: Any, inside: Any, dtype: str) -> dict[str, Any]:
     finite = known & jnp.isfinite(fitted)
     nonzero = finite & (exact != 0)
     size = jnp.where(known, jnp.abs(exact), 0)
-    error = jnp.where(finite, fitted - exact, 0)
+    error = jnp.where(finite, fitted - exact if low is None else (fitted - exact) - low, 0)
     relative = jnp.where(nonzero, error / jnp.where(nonzero, exact, 1), 0)
-    kinds = (finite, nonzero, jnp.isnan(fitted), jnp.isinf(fitted), jnp.isnan(exact), jnp.isinf(exact))
+    kinds = (finite, nonzero, known, jnp.isnan(fitted), jnp.isinf(fitted), jnp.isnan(exact), jnp.isinf(exact))
     return {
         "finite": finite, "nonzero": nonzero, "known": known, "exact": exact,
         # Each count has a byte of its own: a lane sees 64 samples of a chunk.
         "counts": sum((inside & kind).astype(jnp.int64) << (8 * place) for place, kind in enumerate(kinds)),
         "size": size, "error": error, "absolute": jnp.abs(error), "square": error * error,
         "relative_signed": relative, "relative": jnp.abs(relative), "relative_square": relative * relative,
-        "ulp": jnp.abs(error) * _per_ulp(size, dtype),
+        "ulp": _in_ulp(jnp.abs(error), size, dtype),
     }  # fmt: skip
 
 
@@ -130,17 +166,20 @@ def _format(dtype: str) -> tuple[int, int]:
     return int(about.nmant), int(about.minexp)
 
 
-def _per_ulp(size: Any, dtype: str) -> Any:
-    """How many units in the last place of `dtype` make 1, at numbers of this size: a power of two."""
+def _in_ulp(error: Any, size: Any, dtype: str) -> Any:
+    """The error in units in the last place of `dtype`, at numbers of this size."""
     import jax
     import jax.numpy as jnp
 
     fraction, least = _format(dtype)
     bits = jax.lax.bitcast_convert_type(size, jnp.uint64)
     exponent = jnp.maximum((bits >> 52).astype(jnp.int64) - 1023, least)
-    # Below 2**-971 the factor would be beyond 2**1023: float64 alone reaches that, and its errors there are denormal.
-    power = jnp.minimum(fraction - exponent, 1023)
-    return jax.lax.bitcast_convert_type(((power + 1023).astype(jnp.uint64)) << 52, jnp.float64)
+    # A power of two can be beyond 2**1023, at numbers below 2**-971, which float64 alone has: then in two steps.
+    power = fraction - exponent
+    steps = (power // 2, power - power // 2) if fraction - least > 1023 else (power,)
+    for step in steps:
+        error = error * jax.lax.bitcast_convert_type(((step + 1023).astype(jnp.uint64)) << 52, jnp.float64)
+    return error
 
 
 def _added(carried: dict[str, Any], row: dict[str, Any], number: Any) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from ratfit._error.chunk import BINS_AN_OCTAVE, LEAST_EXPONENT
+from ratfit._error.chunk import BINS, BINS_AN_OCTAVE, LEAST_EXPONENT
 from ratfit._error.totals import BINNED, Totals
 
 QUANTILES: Mapping[str, float] = {"q50": 0.5, "q90": 0.9, "q99": 0.99, "q999": 0.999}
@@ -14,14 +14,10 @@ QUANTILES: Mapping[str, float] = {"q50": 0.5, "q90": 0.9, "q99": 0.99, "q999": 0
 
 @dataclass(frozen=True)
 class Definition:
-    """One way to say how far a fit is off; None where it divides by 0 or a sum is beyond float64."""
+    """One way to say how far a fit is off; None where it divides by 0 or a sum or square is beyond float64."""
 
     formula: str
     value: Callable[[Totals], float | None]
-
-
-def _known(totals: Totals) -> int:
-    return sum(totals.counts[name] for name in ("finite", "nan_fit", "inf_fit"))
 
 
 # What an error is divided by: the text that the formula shows, and its value.
@@ -29,18 +25,23 @@ _NORMS: Mapping[str, tuple[str, Callable[[Totals], float | None]]] = {
     "absolute": ("", lambda totals: 1.0),
     "peak": (" / max(|exact|)", lambda totals: totals.extremes["peak"]),
     "range": (" / (max(exact) - min(exact))", lambda totals: totals.extremes["highest"] - totals.extremes["lowest"]),
-    "mean": (" / mean(|exact|)", lambda totals: totals.mean("size", _known(totals))),
+    "mean": (" / mean(|exact|)", lambda totals: totals.mean("size", totals.counts["known"])),
 }
 
 
-def _rms(square: float | None) -> float | None:
-    return None if square is None else math.sqrt(square)
+LEAST_SQUARE = 2.0**-900
+"""Below this mean square, what squares that are too small for float64 add to it may show."""
+
+
+def _rms(totals: Totals, square: str, error: str, over: str) -> float | None:
+    value, size = (totals.mean(name, totals.counts[over]) for name in (square, error))
+    return None if value is None or (value < LEAST_SQUARE and size != 0) else math.sqrt(value)
 
 
 # What is made of the errors of all samples.
 _STATISTICS: Mapping[str, tuple[str, Callable[[Totals], float | None]]] = {
     "mean": ("mean(|fit - exact|)", lambda totals: totals.mean("absolute", totals.counts["finite"])),
-    "rms": ("sqrt(mean((fit - exact)^2))", lambda totals: _rms(totals.mean("square", totals.counts["finite"]))),
+    "rms": ("sqrt(mean((fit - exact)^2))", lambda totals: _rms(totals, "square", "absolute", "finite")),
     "max": ("max(|fit - exact|)", lambda totals: _worst(totals, "absolute")),
     "bias": ("mean(fit - exact)", lambda totals: totals.mean("error", totals.counts["finite"])),
 }
@@ -72,15 +73,20 @@ def _quantile(name: str, share: float) -> Definition:
 def quantile(bins: Mapping[int, int], share: float) -> float | None:
     """A quantile from a histogram: the middle of its bin, which is within 0.8 % of every number in that bin.
 
-    The least bin holds all below 2**-192 and is 0; the highest all from 2**64 on.
+    The least bin holds all below 2**-192 and is 0; the highest all that is about 2**64 or more, and is None.
     """
     left = share * sum(bins.values())
     for place in sorted(bins):
         left -= bins[place]
         if left <= 0:
-            octave, part = divmod(place, BINS_AN_OCTAVE)
-            return 0.0 if place == 0 else math.ldexp(1 + (part + 0.5) / BINS_AN_OCTAVE, octave + LEAST_EXPONENT)
+            return _middle(place)
     return None
+
+
+def _middle(place: int) -> float | None:
+    octave, part = divmod(place, BINS_AN_OCTAVE)
+    inside = math.ldexp(1 + (part + 0.5) / BINS_AN_OCTAVE, octave + LEAST_EXPONENT)
+    return {0: 0.0, BINS - 1: None}.get(place, inside)
 
 
 def _table() -> Iterator[tuple[str, Definition]]:
@@ -97,7 +103,7 @@ def _table() -> Iterator[tuple[str, Definition]]:
         "relative_rms",
         Definition(
             f"sqrt(mean((fit - exact)^2 / exact^2)) {over}",
-            lambda totals: _rms(totals.mean("relative_square", nonzero(totals))),
+            lambda totals: _rms(totals, "relative_square", "relative", "nonzero"),
         ),
     )
     yield "relative_max", Definition(f"max(|fit - exact| / |exact|) {over}", lambda totals: _worst(totals, "relative"))

@@ -11,11 +11,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ratfit._error.bits import KeptValue, kept_values
-from ratfit._error.chunk import COUNTS, WORST
+from ratfit._error.chunk import LEFT_OUT, WORST
 from ratfit._error.curve import error_curve
 from ratfit._error.definitions import TABLE
 from ratfit._error.poles import poles_of
-from ratfit._error.stream import Watch, stream
+from ratfit._error.reference import FLOAT64, Reference, reference_for
+from ratfit._error.stream import Watch, pass_of, stream
 from ratfit._error.totals import Totals
 from ratfit._kernel import precision
 from ratfit._sampling import bounds, check_protocol, count, drawing, resolve
@@ -70,7 +71,8 @@ def measure_error(
     - `fit`: a `Fit` without free coefficients, or anything with a `problem` and a `formula`.
     - `samples`, `sampling`, `seed`: how many points, by which protocol, from which seed; `exhaustive` takes every
       number of the dtype in the closed domain, and `samples=None`.
-    - `dtype`: what the fit is computed in, `"float16"`, `"float32"` or `"float64"`; the exact function in float64.
+    - `dtype`: what the fit is computed in, `"float16"`, `"float32"` or `"float64"`; the exact function in float64, for
+      `exhaustive` in double-double where float64 would not do.
     - `parameters`: the values of the problem's parameters by name, or `"random"`: drawn anew for every sample.
     - `reference`: the name of the problem's reference to compare with, in place of the target.
     - `quantiles`: whether the histograms are kept that quantiles come from.
@@ -86,13 +88,16 @@ def measure_error(
     sampling = resolve(sampling, place.variable.name, place.low, place.high, dtype)
     if samples is None:
         samples = count(place.low, place.high, dtype)
-    totals = stream(place, samples, sampling, seed, dtype, quantiles, watch or Watch())
+    exhaustive = sampling == "exhaustive"
+    better = reference_for(place, sampling, seed, samples, dtype) if exhaustive else FLOAT64
+    what = pass_of(place, sampling, dtype, quantiles, better.double_double)
+    totals = stream(what, place, samples, seed, watch or Watch())
     infinite = poles_of(place)
     epsilon = {name: each.value(totals) for name, each in TABLE.items() if quantiles or "_q" not in name}
     if infinite:
         epsilon = {name: value if "_q" in name else None for name, value in epsilon.items()}
     places = _places(totals, place, sampling, seed, dtype)
-    kept = kept_values(fit, place, dtype) if sampling == "exhaustive" else ()
+    kept = kept_values(fit, place, dtype) if exhaustive else ()
     return ErrorMeasurement(
         epsilon=epsilon,
         worst=_worst(places),
@@ -103,12 +108,12 @@ def measure_error(
         dtype=dtype,
         parameters=place.parameters,
         reference=reference,
-        counts={name: totals.counts[name] for name in COUNTS if name not in ("finite", "nonzero")},
+        counts={name: totals.counts[name] for name in LEFT_OUT},
         places=places,
         poles=infinite,
         kept=kept,
         curve=error_curve(place, dtype),
-        note="; ".join([*_notes(totals, infinite, place, dtype), *map(str, kept)]),
+        note="; ".join([*_notes(totals, infinite, place, dtype, better), *map(str, kept)]),
     )
 
 
@@ -136,12 +141,16 @@ def _worst(places: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     return {"definition": definition, **places.get(definition, {"at": None})}
 
 
-def _notes(totals: Totals, infinite: tuple[float, ...], place: Setting, dtype: str) -> Iterator[str]:
+def _notes(totals: Totals, infinite: tuple[float, ...], place: Setting, dtype: str, better: Reference) -> Iterator[str]:
     if infinite:
         where = ", ".join(f"{at:.6g}" for at in infinite[:3])
         yield f"pole of the fit at {place.variable} = {where}: no mean or maximum has a meaning"
     if not totals.counts["finite"]:
         yield f"no sample is finite in {dtype}: its constants or values leave that type's range"
-    counted = ", ".join(f"{totals.counts[n]} {n.replace('_', ' of the ')}" for n in COUNTS[2:] if totals.counts[n])
+    counted = ", ".join(f"{totals.counts[n]} {n.replace('_', ' of the ')}" for n in LEFT_OUT if totals.counts[n])
     if counted:
         yield f"left out: {counted}"
+    if better.double_double:
+        yield "reference in double-double"
+    if better.note:
+        yield better.note

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
+import math
+from collections.abc import Callable, Iterator, Mapping
 
 import sympy as sp
 
@@ -14,8 +15,16 @@ from ratfit._setting import Setting
 STEPS = (1e-3, 1e-6, 1e-9)
 """Distances from a suspected pole, as shares of the domain's length, at which the fit is looked at."""
 
-GROWTH = 10.0
+GROWTH = 9.0
 """From each distance to the next a pole of any order from 1/3 on grows by more than that."""
+
+SLACK = 4
+"""How many units in the last place an end of the domain may lie beside its true place, pi/2 for one."""
+
+_POLES_OF: Mapping[type[sp.Function], Callable[[sp.Expr], sp.Expr]] = {
+    sp.tan: sp.cos, sp.sec: sp.cos, sp.cot: sp.sin, sp.csc: sp.sin, sp.coth: sp.sinh, sp.csch: sp.sinh,
+}  # fmt: skip
+"""Functions that are infinite where another is 0."""
 
 
 def poles_of(place: Setting) -> tuple[float, ...]:
@@ -25,14 +34,27 @@ def poles_of(place: Setting) -> tuple[float, ...]:
     """
     x = place.variable
     fixed = {symbol: sp.Rational(value) for symbol, value in place.values.items()}
-    powers = [node for node in place.formula.atoms(sp.Pow) if node.has(x) and node.exp.could_extract_minus_sign()]
+    middle = {symbol: (low + high) / 2 for symbol, (low, high) in place.ranges.items()}
+    support = (
+        sp.Rational(place.low - SLACK * math.ulp(place.low)),
+        sp.Rational(place.high + SLACK * math.ulp(place.high)),
+    )
     found = set()
-    for base in {node.base.xreplace(fixed) for node in powers}:
-        for root, values in poles(base, x, (sp.Rational(place.low), sp.Rational(place.high))):
+    for zero in {zero.xreplace(fixed) for zero in _denominators(place.formula) if zero.has(x)}:
+        for root, values in poles(zero, x, support):
             at = min(max(float(root), place.low), place.high)
-            if _is_pole(place, at, {symbol: float(value) for symbol, value in values.items()}):
+            if _is_pole(place, at, middle | {symbol: float(value) for symbol, value in values.items()}):
                 found.add(at)
     return tuple(sorted(found))
+
+
+def _denominators(formula: sp.Expr) -> Iterator[sp.Expr]:
+    """Expressions that are 0 wherever the formula may be infinite."""
+    for node in formula.atoms(sp.Pow):
+        if node.exp.could_extract_minus_sign():
+            yield sp.fraction(sp.together(node.base))[0]
+    for node in formula.atoms(*_POLES_OF):
+        yield _POLES_OF[node.func](*node.args)
 
 
 def _is_pole(place: Setting, at: float, drawn: dict[sp.Symbol, float]) -> bool:
@@ -50,5 +72,10 @@ def _grows(place: Setting, at: float, side: int, drawn: dict[sp.Symbol, float]) 
         [abs(lower(program.result, symbols, "numpy", program.steps)(point, *known.values())) for point in points]
         for program in (Program(place.formula), Program(place.exact))
     ]
-    fit, exact = (all(far * GROWTH < near for far, near in itertools.pairwise(each)) for each in sizes)
+    fit, exact = (all(map(_more, each, each[1:])) for each in sizes)
     return fit and not exact
+
+
+def _more(far: float, near: float) -> bool:
+    """Whether a size grows like a pole's; what is beyond the numbers has grown as much as can be seen."""
+    return near == math.inf or far * GROWTH < near

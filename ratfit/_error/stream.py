@@ -34,9 +34,8 @@ class Watch:
     save: Callable[[Mapping[str, Any]], None] | None = None
 
 
-def stream(place: Setting, samples: int, sampling: str, seed: int, dtype: str, quantiles: bool, watch: Watch) -> Totals:
-    """The totals of all samples."""
-    what = Pass(place.program, Program(place.exact), place.varying, sampling, dtype, quantiles)
+def stream(what: Pass, place: Setting, samples: int, seed: int, watch: Watch) -> Totals:
+    """The totals of all samples, in one pass of this kind."""
     done, total = _resumed(watch.state)
     saved = time.monotonic()
     try:
@@ -71,13 +70,10 @@ def _parts(what: Pass, place: Setting, samples: int, seed: int, done: int) -> It
     run, devices = _compiled(what), _devices()
     chunks = -(-samples // CHUNK)
     size = devices * min(CHUNKS, -(-chunks // devices))
-    constants = (
-        kernel(what.fit, what.varying).constants(place.values, what.dtype),
-        kernel(what.exact, what.varying).constants(place.values, "float64"),
-    )
+    constants = (kernel(what.fit, what.varying).constants(place.values, what.dtype), _constants_of_exact(what, place))
     given = (np.uint64(samples), np.uint64(seed), bounds(place, what.dtype), constants)
     waiting = None
-    with precision("float64"):
+    with precision("float64"), np.errstate(over="ignore"):  # constants of the fit may leave the dtype under test
         for first in range(done, chunks, size):
             begun = run(np.arange(first, first + size, dtype=np.uint64) * np.uint64(CHUNK), *given)
             if waiting:
@@ -85,6 +81,20 @@ def _parts(what: Pass, place: Setting, samples: int, seed: int, done: int) -> It
             waiting = begun
         if waiting:
             yield chunks, _fetched(waiting)
+
+
+def _constants_of_exact(what: Pass, place: Setting) -> list[Any]:
+    import numpy as np
+
+    if what.double_double:
+        return [np.asarray(place.values[symbol]) for symbol in what.fixed]
+    return kernel(what.exact, what.varying).constants(place.values, "float64")
+
+
+def pass_of(place: Setting, sampling: str, dtype: str, quantiles: bool, double_double: bool = False) -> Pass:
+    """What is to be compiled for a setting; `double_double` is the arithmetic of its exact function."""
+    fixed = tuple(place.values) if double_double else ()
+    return Pass(place.program, Program(place.exact), place.varying, sampling, dtype, quantiles, double_double, fixed)
 
 
 def _fetched(found: Mapping[str, Any]) -> Totals:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
 
@@ -35,12 +36,9 @@ def poles_of(place: Setting) -> tuple[float, ...]:
     x = place.variable
     fixed = {symbol: sp.Rational(value) for symbol, value in place.values.items()}
     middle = {symbol: (low + high) / 2 for symbol, (low, high) in place.ranges.items()}
-    support = (
-        sp.Rational(place.low - SLACK * math.ulp(place.low)),
-        sp.Rational(place.high + SLACK * math.ulp(place.high)),
-    )
     found = set()
-    for zero in {zero.xreplace(fixed) for zero in _denominators(place.formula) if zero.has(x)}:
+    zeros = {zero.xreplace(fixed) for zero in _denominators(place.formula) if zero.has(x)}
+    for zero, support in itertools.product(zeros, _supports(place)):
         for root, values in poles(zero, x, support):
             at = min(max(float(root), place.low), place.high)
             if _is_pole(place, at, middle | {symbol: float(value) for symbol, value in values.items()}):
@@ -48,11 +46,20 @@ def poles_of(place: Setting) -> tuple[float, ...]:
     return tuple(sorted(found))
 
 
+def _supports(place: Setting) -> Iterator[tuple[sp.Expr, sp.Expr]]:
+    """The domain as it is, whose ends may be zeros that do not change their sign, and a little more."""
+    yield sp.Rational(place.low), sp.Rational(place.high)
+    yield (
+        sp.Rational(place.low - SLACK * math.ulp(place.low)),
+        sp.Rational(place.high + SLACK * math.ulp(place.high)),
+    )
+
+
 def _denominators(formula: sp.Expr) -> Iterator[sp.Expr]:
     """Expressions that are 0 wherever the formula may be infinite."""
     for node in formula.atoms(sp.Pow):
         if node.exp.could_extract_minus_sign():
-            yield sp.fraction(sp.together(node.base))[0]
+            yield sp.fraction(sp.together(node.base.replace(sp.Abs, lambda inside: inside)))[0]
     for node in formula.atoms(*_POLES_OF):
         yield _POLES_OF[node.func](*node.args)
 

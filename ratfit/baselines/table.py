@@ -37,22 +37,20 @@ def table_of_equal_error(
 ) -> Peer | Unavailable:
     """The table with the smallest power of two of entries whose largest error is not above the fit's.
 
-    Both errors are looked at in float64, at 2048 places of the domain.
+    Both errors are looked at in float64, at up to 2048 places of the domain.
 
     **Fails** with `RatfitError` as `setting` does, and for a random parameter.
     """
     place = setting(fit, parameters, reference)
     original = original_of(place)
     function = lower(place.formula, (place.variable, *place.values))
-    target = original.peak_error(function(original.places, *place.values.values()))
-    entries = 2
     try:
-        while entries <= MOST:
+        target = original.peak_error(function(original.places, *place.values.values()))
+        for entries in (2**k for k in range(1, MOST.bit_length())):
             nodes = np.linspace(original.low, original.high, entries)
             error = original.peak_error(np.interp(original.places, nodes, _values(original, entries)))
             if error <= target:
                 return table(fit, original, entries)
-            entries *= 2
     except RatfitError as reason:
         return Unavailable("table", str(reason))
     return Unavailable(

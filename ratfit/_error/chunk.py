@@ -15,6 +15,7 @@ from typing import Any
 from ratfit._double_double import double_double
 from ratfit._kernel import Program, kernel
 from ratfit._sampling import drawing
+from ratfit._setting import Setting
 
 CHUNK = 2**18
 """Samples that are added up together: fixed, because the totals of a chunk depend on it in their last bits."""
@@ -50,6 +51,11 @@ class Pass:
     quantiles: bool
     double_double: bool = False  # the arithmetic of the exact function; its constants are then the values of `fixed`
     fixed: tuple[Any, ...] = ()
+
+
+def exact_program(place: Setting) -> Program:
+    """The exact function as it is computed: as it is written, or as the fit is where the fit is that very formula."""
+    return place.program if place.formula == place.exact else Program(place.exact)
 
 
 def chunk_totals(what: Pass, start: Any, samples: Any, seed: Any, ends: Any, constants: Any) -> dict[str, Any]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ratfit._kernel import Program, hoist
+from ratfit._error.chunk import exact_program
+from ratfit._kernel import hoist
 from ratfit._lower import lower
 from ratfit._setting import Setting
 
@@ -61,7 +62,7 @@ def values_at(place: Setting, points: Any, dtype: str, drawn: Any) -> tuple[Any,
     import numpy as np
 
     found = []
-    for program, kind in ((place.program, dtype), (Program(place.exact), "float64")):
+    for program, kind in ((place.program, dtype), (exact_program(place), "float64")):
         hoisted = hoist(program, (place.variable,))
         with np.errstate(all="ignore"):
             constants = np.asarray(hoisted.values({**place.values, **drawn}), float).astype(kind)

@@ -67,7 +67,13 @@ def _normalised(norm: str, statistic: str) -> Definition:
 
 def _quantile(name: str, share: float) -> Definition:
     text = "|fit - exact|" + (" / |exact| over exact != 0" if name == "relative" else "")
-    return Definition(f"the {share:g} quantile of {text}", lambda totals: quantile(totals.bins[name], share))
+
+    def eps(totals: Totals) -> float | None:
+        value = quantile(totals.bins[name], share)
+        # The middle of the greatest error's bin may be beyond that error.
+        return value if value is None else min(value, totals.worst[name][0])
+
+    return Definition(f"the {share:g} quantile of {text}", eps)
 
 
 def quantile(bins: Mapping[int, int], share: float) -> float | None:

@@ -17,6 +17,7 @@ from ratfit._error.definitions import TABLE
 from ratfit._error.poles import poles_of
 from ratfit._error.reference import FLOAT64, Reference, reference_for
 from ratfit._error.stream import Watch, pass_of, stream
+from ratfit._error.subnormal import flushed_samples
 from ratfit._error.totals import Totals
 from ratfit._kernel import precision
 from ratfit._sampling import bounds, check_protocol, count, drawing, resolve
@@ -113,7 +114,7 @@ def measure_error(
         poles=infinite,
         kept=kept,
         curve=error_curve(place, dtype),
-        note="; ".join([*_notes(totals, infinite, place, dtype, better), *map(str, kept)]),
+        note="; ".join([*_notes(totals, infinite, place, dtype, better, exhaustive), *map(str, kept)]),
     )
 
 
@@ -141,7 +142,9 @@ def _worst(places: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     return {"definition": definition, **places.get(definition, {"at": None})}
 
 
-def _notes(totals: Totals, infinite: tuple[float, ...], place: Setting, dtype: str, better: Reference) -> Iterator[str]:
+def _notes(
+    totals: Totals, infinite: tuple[float, ...], place: Setting, dtype: str, better: Reference, exhaustive: bool
+) -> Iterator[str]:
     if infinite:
         where = ", ".join(f"{at:.6g}" for at in infinite[:3])
         yield f"pole of the fit at {place.variable} = {where}: no mean or maximum has a meaning"
@@ -154,3 +157,5 @@ def _notes(totals: Totals, infinite: tuple[float, ...], place: Setting, dtype: s
         yield "reference in double-double"
     if better.note:
         yield better.note
+    if exhaustive and (flushed := flushed_samples(place, dtype)):
+        yield f"{flushed} samples are subnormal, which JAX takes for 0 here"

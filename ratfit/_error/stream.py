@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ratfit._error.chunk import CHUNK, Pass, chunk_totals
+from ratfit._error.chunk import CHUNK, Pass, chunk_totals, exact_program
 from ratfit._error.totals import NOTHING, Totals, of_chunks
 from ratfit._kernel import Program, kernel, precision
 from ratfit._sampling import bounds
@@ -94,7 +94,8 @@ def _constants_of_exact(what: Pass, place: Setting) -> list[Any]:
 def pass_of(place: Setting, sampling: str, dtype: str, quantiles: bool, double_double: bool = False) -> Pass:
     """What is to be compiled for a setting; `double_double` is the arithmetic of its exact function."""
     fixed = tuple(place.values) if double_double else ()
-    return Pass(place.program, Program(place.exact), place.varying, sampling, dtype, quantiles, double_double, fixed)
+    exact = Program(place.exact) if double_double else exact_program(place)
+    return Pass(place.program, exact, place.varying, sampling, dtype, quantiles, double_double, fixed)
 
 
 def _fetched(found: Mapping[str, Any]) -> Totals:

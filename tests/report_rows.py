@@ -82,12 +82,18 @@ def full_rows():
     rows = []
     for k, m in enumerate((0.01, 0.05, 0.1, 0.25, 0.5), 1):
         given = {"parameters": {"m": m}}
-        note = {1: "fit at the copy floor: gamma is a lower bound", 5: "pole at v = 0.42 of the peer"}.get(k, "")
+        note = {1: "fit at the copy floor: gamma is a lower bound", 5: "pole of the fit at v = 0.42"}.get(k, "")
         rows.append(row(epsilon=0.001 * k, gamma=3.0 * k, note=note, curve=curve(0.01 * k), **given))
         rows.append(row(epsilon=0.001 * k, gamma=20.0 * k, backend="c-scalar", **given))
         rows.append(row("smith:walter-2007", epsilon=0.3, gamma=4.0, **given))
         rows += [
-            row(f"smith~{peer}", epsilon=0.002 * k / 3**n, gamma=math.sqrt(2 + n * k), **given)
+            row(
+                f"smith~{peer}",
+                note=f"{n} entries, linear",
+                epsilon=0.002 * k / 3**n,
+                gamma=math.sqrt(2 + n * k),
+                **given,
+            )
             for n, peer in enumerate(PEERS)
         ]
     rows.append(row("smith~aaa", gamma=7.0, curve=curve()))

@@ -95,7 +95,7 @@ def test_the_pages_policy_refuses_what_is_put_into_it(browser, page, tmp_path):
 def test_text_and_figures_can_be_read_in_light_and_in_dark(browser, page, scheme):
     browser.open(page, scheme=scheme)
     assert (luminance(browser, "body", "backgroundColor") < 0.1) == (scheme == "dark")
-    for selector in ("body", "a", "figcaption", ".remark", "th", "pre"):
+    for selector in ("body", "a", "figcaption", ".remark", ".aside", ".notes", "th", "pre"):
         assert contrast(browser, selector) >= 4.5, selector
     assert contrast(browser, ".drawing svg text", "fill") >= 4.5
     for number in (1, 2, 3, 4, 5):

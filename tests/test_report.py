@@ -25,7 +25,16 @@ from ratfit.report.error_figure import MOST, ErrorCurve, error_figure
 from ratfit.report.formula import formula
 from ratfit.report.html import to_html
 from ratfit.report.markdown import to_markdown
-from ratfit.report.measured import epsilon_range, error_remarks, gamma, gamma_range, name_of, number, speed_remarks
+from ratfit.report.measured import (
+    about_peer,
+    epsilon_range,
+    error_remarks,
+    gamma,
+    gamma_range,
+    name_of,
+    number,
+    speed_remarks,
+)
 from ratfit.report.records import document_of, run_report, write_report
 from ratfit.report.write import write_document
 
@@ -111,14 +120,16 @@ def test_numbers_have_three_digits(value, digits, expected):
     ("value", "low", "high", "note", "expected"),
     [
         (12.34, 11.92, 12.81, "", "12.3 [11.9, 12.8]"),
-        (31.8, 24, 45, "", "30 [20, 40]"),  # only tens are known; 45 goes to the even ten
+        (31.8, 24, 45, "", "32 [24, 45]"),
+        (318.4, 240, 451, "", "320 [240, 450]"),
         (3180, 2900, 3400, "", "3200 [2900, 3400]"),
+        (2.5, 2.4, 2.6, "exact function at the copy floor: gamma is an upper bound", "≤ 2.50 [2.40, 2.60]"),
         (1.0021, 0.9981, 1.0041, "", "1.002 [0.998, 1.004]"),
         (1.00213, 1.00205, 1.00219, "", "1.002 [1.002, 1.002]"),
         (2.0, None, None, "", "2"),
         (2.0, 2.0, 2.0, "", "2 [2, 2]"),
         (None, None, None, "", "–"),
-        (2.5, 2.4, 2.6, "fit at the copy floor: gamma is a lower bound", "≥ 2.5 [2.4, 2.6]"),
+        (2.5, 2.4, 2.6, "fit at the copy floor: gamma is a lower bound", "≥ 2.50 [2.40, 2.60]"),
     ],
 )
 def test_gamma_has_the_digits_that_its_interval_leaves(value, low, high, note, expected):
@@ -128,19 +139,43 @@ def test_gamma_has_the_digits_that_its_interval_leaves(value, low, high, note, e
 def test_ranges_go_from_the_least_to_the_greatest():
     rows = [row(epsilon=e, gamma=g) for e, g in ((0.02, 10.0), (0.001, 30.0), (0.3, 20.0))]
     assert epsilon_range(rows, "peak_mean") == "0.001 to 0.3"
-    assert gamma_range(rows) == "10.0 to 30"
+    assert gamma_range(rows) == "10.0 to 30.0"
     assert (epsilon_range([], "peak_mean"), gamma_range([])) == ("not measured", "not measured")
 
 
 def test_a_remark_stands_with_the_number_that_it_qualifies():
-    noted = row(
-        note="formula 0123456789; fit at the copy floor: gamma is a lower bound; noisy: time it again; pole at v = 1"
+    floor, noise = "fit at the copy floor: gamma is a lower bound", "noisy: the load average was 5.3 on 2 cores"
+    pole = "pole of the fit at v = 0.42: no mean or maximum has a meaning"
+    noted = row(note="; ".join((pole, floor, noise)))
+    assert (error_remarks(noted), speed_remarks(noted)) == ((pole,), (floor, noise))
+    document = document_of([noted, row(note=noise, parameters={"m": 0.5})])
+    table = next(_blocks(document, Table, "gamma"))
+    column = [column.label for column in table.head].index("gamma")
+    assert [r[column].remarks for r in table.rows] == [(floor, noise), (noise,)]
+    assert table.notes == {floor: "a", noise: "b", pole: "c"}
+    text = to_markdown(document, "report")
+    assert "| ≥ 12.3 \\[11.9, 12.8\\] (a, b) |" in text and "| 12.3 \\[11.9, 12.8\\] (b) |" in text
+    assert f"(a) {floor}  \n(b) {noise}  \n(c) {pole}" in text
+    page = Page(to_html(document))
+    assert {"a", "b", "c"} <= set(page.texts("sup"))
+
+
+def test_what_a_peer_is_and_what_was_counted_explain_and_do_not_warn():
+    about, counted = (
+        "[2/2] from values at 1024 Chebyshev nodes, 4 add, 2 mul, 1 div",
+        "exact function 80 additions, fit 12",
     )
-    assert speed_remarks(noted) == ("fit at the copy floor: gamma is a lower bound", "noisy: time it again")
-    assert error_remarks(noted) == ("pole at v = 1",)
-    table = next(_blocks(document_of([noted]), Table, "gamma"))
-    remarks = {c.label: cell.remark for c, cell in zip(table.head, table.rows[0], strict=True) if cell.remark}
-    assert set(remarks) == {"gamma", "nonfinite"} and remarks["nonfinite"] == "pole at v = 1"
+    pole = "infinite inside the domain, at 0.3"
+    peer = row("smith~aaa", backend="cost-model", note=f"{about}; {pole}; {counted}")
+    assert (about_peer(peer), error_remarks(peer), speed_remarks(peer)) == (about, (pole,), ())
+    table = list(_blocks(document_of([row(backend="cost-model"), peer]), Table, "gamma"))[1]
+    assert {cell.aside for cell in table.rows[1]} == {"", about, counted}
+
+
+def test_a_gamma_that_a_wrong_output_took_away_says_so_at_the_top():
+    wrong = "the timed output of the fit is wrong at 5 of 100 samples"
+    speed = document_of([row(gamma=None, note=wrong)]).sections[0].blocks[0].items[1]
+    assert (speed.value, speed.remark) == ("not measured", wrong)
 
 
 def _blocks(of, kind, label=""):
@@ -177,10 +212,11 @@ def test_every_row_and_every_definition_is_on_the_page(full, page):
 
 
 def test_the_headlines_are_of_the_fit_and_not_of_peers_references_or_other_backends(full):
-    epsilon, speed, cost, kept = full.sections[0].blocks[0].items
-    assert (epsilon.value, speed.value) == ("0.001 to 0.005", "≥ 3.0 to 15")
+    epsilon, speed, scalar, cost, kept = full.sections[0].blocks[0].items
+    assert (epsilon.value, speed.value) == ("0.001 to 0.005", "≥ 3.00 to 15.0")
     assert speed.remark == "fit at the copy floor: gamma is a lower bound (1 of 5)"
-    assert epsilon.remark == "pole at v = 0.42 of the peer (1 of 5)"
+    assert epsilon.remark == "pole of the fit at v = 0.42 (1 of 5)"
+    assert (scalar.value, scalar.label) == ("20.0 to 100", "gamma on c-scalar, float32, over 5 settings")
     assert (cost.value, kept.value) == ("1 add, 1 mul, 1 div", "3 of 3")
 
 
@@ -484,7 +520,9 @@ def test_a_table_has_as_many_cells_as_heads():
 
 
 def test_other_documents_are_made_of_the_same_nouns(tmp_path):
-    table = Table((Column("a"), Column("b", numeric=True)), ((Cell(("x ", Code("y"))), Cell("2", 2.0, "remark")),))
+    table = Table(
+        (Column("a"), Column("b", numeric=True)), ((Cell(("x ", Code("y"))), Cell("2", 2.0, ("remark",), "aside")),)
+    )
     own = Document(
         "1. A title",
         (Paragraph(("See ", Link("there", "Part"), ".")),),
@@ -492,7 +530,8 @@ def test_other_documents_are_made_of_the_same_nouns(tmp_path):
     )
     assert [path.name for path in write_document(own, tmp_path, "paper")] == ["paper.html", "paper.md"]
     assert (tmp_path / "paper.md").read_text() == (
-        "# 1\\. A title\n\nSee there.\n\n## Part\n\n| a | b |\n| --- | ---: |\n| x `y` | 2 (remark) |\n\n"
+        "# 1\\. A title\n\nSee there.\n\n## Part\n\n"
+        "| a | b |\n| --- | ---: |\n| x `y` | 2 (a) (aside) |\n\n(a) remark\n\n"
         "- word: meaning\n\n- 1\\. one\n- `` ` ``\n"
     )
     assert '<a href="#section-1">there</a>' in (tmp_path / "paper.html").read_text()

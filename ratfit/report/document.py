@@ -115,11 +115,15 @@ class Column:
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell: its text, the number to sort by (None: no number, sorted last), and a remark on it."""
+    """One cell: its text and the number to sort by (None: no number, sorted last).
+
+    `remarks` change what the text means, warnings say; an `aside` explains it.
+    """
 
     text: Text
     key: float | None = None
-    remark: str = ""
+    remarks: tuple[str, ...] = ()
+    aside: str = ""
 
 
 @dataclass(frozen=True)
@@ -135,6 +139,18 @@ class Table:
         for row in self.rows:
             if len(row) != len(self.head):
                 raise ValueError(f"a row of {len(row)} cells under a head of {len(self.head)}")
+
+    @property
+    def notes(self) -> dict[str, str]:
+        """Every remark on a cell, in the order of the table, with the letter that stands for it beside the number."""
+        remarks = dict.fromkeys(remark for row in self.rows for cell in row for remark in cell.remarks)
+        return {remark: _letter(number) for number, remark in enumerate(remarks)}
+
+
+def _letter(number: int) -> str:
+    """a to z, then aa, ab ..."""
+    more, place = divmod(number, 26)
+    return (_letter(more - 1) if more else "") + "abcdefghijklmnopqrstuvwxyz"[place]
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,7 @@ def costs(problem: ProblemRows) -> Iterator[Block]:
 
 
 def _where(key: tuple[str, str, str]) -> str:
-    return ", ".join(key)
+    return ", ".join(filter(None, key))
 
 
 def _is_point(row: Row, definition: str) -> bool:

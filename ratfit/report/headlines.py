@@ -12,15 +12,12 @@ from ratfit.report.problem_rows import ProblemRows
 
 
 def headlines(problem: ProblemRows) -> Headlines:
-    """The numbers at the top, each with what qualifies it."""
-    errors, times, fit = problem.with_errors(), problem.with_times(), problem.fit
-    items = [
-        Headline(
-            epsilon_range(errors, problem.leading),
-            _error_label(errors, problem.leading),
-            _said(errors, error_remarks),
-        ),
-        Headline(gamma_range(times), _speed_label(times), _said(times, speed_remarks)),
+    """eps, gamma on each backend (one ratio alone misleads), the operations, and the conditions that are kept."""
+    errors, fit = problem.with_errors(), problem.fit
+    said = _said(errors, error_remarks)
+    items = [Headline(epsilon_range(errors, problem.leading), _error_label(errors, problem.leading), said)]
+    items += [
+        Headline(gamma_range(rows), _speed_label(rows), _said(rows, speed_remarks)) for rows in problem.by_backend()
     ]
     if fit and fit["cost"]:
         items.append(Headline(counts(fit["cost"]), "operations a sample"))
@@ -41,8 +38,6 @@ def _error_label(rows: Sequence[Row], definition: str) -> Text:
 
 
 def _speed_label(rows: Sequence[Row]) -> Text:
-    if not rows:
-        return "gamma"
     backend, dtype, _ = circumstances(rows[0])
     return f"gamma on {backend}, {dtype}{_settings(rows)}"
 
@@ -58,9 +53,14 @@ def _said(rows: Sequence[Row], remarks: Callable[[Row], tuple[str, ...]]) -> str
     """Each remark once, with the number of rows that it is on where that is not all of them."""
     found: dict[str, int] = {}
     for row in rows:
-        for remark in remarks(row):
+        for remark in dict.fromkeys(map(_general, remarks(row))):
             found[remark] = found.get(remark, 0) + 1
     return "; ".join(text if n == len(rows) else f"{text} ({n} of {len(rows)})" for text, n in found.items())
+
+
+def _general(remark: str) -> str:
+    """A remark without what disturbed this one row: the table has it."""
+    return "noisy: time it again on a quiet machine" if remark.startswith("noisy: ") else remark
 
 
 def _kept(conditions: Sequence[dict[str, Any]]) -> Headline:

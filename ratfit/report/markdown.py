@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import re
+from collections.abc import Mapping
 from functools import singledispatch
 
 from ratfit.report.document import (
@@ -93,7 +94,10 @@ def _(block: Table, level: int, name: str) -> str:
     lines = [_line(block.caption), ""] if block.caption else []
     lines += [_row([_text(column.label) for column in block.head])]
     lines += [_row(["---:" if column.numeric else "---" for column in block.head])]
-    lines += [_row([_cell(cell) for cell in row]) for row in block.rows]
+    notes = block.notes
+    lines += [_row([_cell(cell, notes) for cell in row]) for row in block.rows]
+    if notes:
+        lines += ["", "  \n".join(f"({letter}) {_text(remark)}" for remark, letter in notes.items())]
     return "\n".join(lines)
 
 
@@ -118,9 +122,10 @@ def _row(cells: list[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def _cell(cell: Cell) -> str:
-    text = _text(cell.text, in_table=True)
-    return f"{text} ({_text(cell.remark)})" if cell.remark else text
+def _cell(cell: Cell, notes: Mapping[str, str]) -> str:
+    letters = ", ".join(notes[remark] for remark in cell.remarks)
+    aside = f"({_text(cell.aside)})" if cell.aside else ""
+    return " ".join(filter(None, (_text(cell.text, in_table=True), f"({letters})" if letters else "", aside)))
 
 
 def _line(text: Text) -> str:

@@ -9,17 +9,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from ratfit._record import Row
-
-COLUMNS = ("peak_mean", "peak_rms", "peak_max", "relative_mean", "relative_max", "ulp_max")
-"""The definitions of eps that a table of rows shows; all others are folded away."""
+from ratfit.report.bench import is_of_speed
 
 LEADING = ("peak_mean", "mean_mean", "relative_mean", "absolute_mean")
 """The definitions that may stand at the top, the first that was measured."""
 
 NONE = "–"
 
-_OF_SPEED = re.compile(r"gamma|floor|nois|timed|timing|speed|clock|compiler", re.IGNORECASE)
-_IS_BOUND = re.compile(r"lower bound", re.IGNORECASE)
+_BOUNDS = {"gamma is a lower bound": "≥ ", "gamma is an upper bound": "≤ "}
+_IS_COUNT = re.compile(r"exact function \S+ additions, fit \S+$")
 
 
 @dataclass(frozen=True)
@@ -89,11 +87,11 @@ def leading(rows: Iterable[Row]) -> str:
 
 
 def gamma(row: Row) -> str:
-    """gamma with its 95 % interval, to the digits that this leaves: "12.3 [11.9, 12.8]"; "≥" where it is a bound."""
+    """gamma with its 95 % interval, to the digits that this leaves: "12.3 [11.9, 12.8]"; a sign where it is a bound."""
     value, low, high = row["gamma"], row["gamma_low"], row["gamma_high"]
     if value is None:
         return NONE
-    sign = "≥ " if is_bound(row) else ""
+    sign = _sign(row)
     if low is None or high is None:
         return sign + number(value)
     return f"{sign}{_known(value, low, high)} [{_known(low, low, high)}, {_known(high, low, high)}]"
@@ -120,33 +118,47 @@ def _between(low: str, high: str) -> str:
 
 
 def _known(value: float, low: float, high: float) -> str:
-    """A value to the place where the interval's width has its first digit, and to no more than four digits."""
+    """A value so that its last digit is worth no more than a quarter of the interval; four digits at most."""
     if not high > low:
         return number(value)
-    place = math.floor(math.log10(high - low))
+    place = math.floor(math.log10((high - low) / 4))
     digits = math.floor(math.log10(abs(value))) - place + 1 if value else 1
     shown = float(f"{value:.{min(max(digits, 1), 4)}g}")
     return f"{shown:.{max(0, -place)}f}" if digits <= 4 and abs(shown) < 1e6 else number(shown, 4)
 
 
-def is_bound(row: Row) -> bool:
-    """Whether the row's remarks make its gamma a lower bound."""
-    return bool(_IS_BOUND.search(row["note"]))
+def _sign(row: Row) -> str:
+    """What the row's remarks make of its gamma: a bound, or nothing else than it says."""
+    return next((sign for words, sign in _BOUNDS.items() if words in row["note"]), "")
 
 
 def speed_remarks(row: Row) -> tuple[str, ...]:
     """The remarks that qualify times and gamma."""
-    return tuple(remark for remark in _remarks(row) if _OF_SPEED.search(remark))
+    return tuple(remark for remark in _remarks(row) if is_of_speed(remark) and not _IS_COUNT.match(remark))
 
 
 def error_remarks(row: Row) -> tuple[str, ...]:
-    """All other remarks: they qualify eps."""
-    return tuple(remark for remark in _remarks(row) if not _OF_SPEED.search(remark))
+    """The remarks that qualify eps."""
+    return tuple(remark for remark in _remarks(row)[len(_about(row)) :] if not is_of_speed(remark))
+
+
+def about_peer(row: Row) -> str:
+    """What a peer is, in a line; empty for a fit."""
+    return "".join(_about(row))
+
+
+def _about(row: Row) -> list[str]:
+    """The first remark on a peer, which says what it is."""
+    return [remark for remark in _remarks(row)[:1] if name_of(row).peer and not is_of_speed(remark)]
+
+
+def counted(row: Row) -> str:
+    """What the cost model counted; empty where gamma was timed."""
+    return "; ".join(remark for remark in _remarks(row) if _IS_COUNT.match(remark))
 
 
 def _remarks(row: Row) -> list[str]:
-    tag = re.compile(r"formula [0-9a-f]{10}$")  # older rows begin with what was measured, in short
-    return [remark for remark in (row["note"] or "").split("; ") if remark and not tag.match(remark)]
+    return [remark for remark in row["note"].split("; ") if remark]
 
 
 def nonfinite(row: Row) -> str:

@@ -53,6 +53,13 @@ class ProblemRows:
         """The main rows under the circumstances of the first that has a gamma."""
         return _like_first(self.main, lambda row: row["gamma"])
 
+    def by_backend(self) -> tuple[tuple[Row, ...], ...]:
+        """The main rows that were timed, or could not be, under the dtype and sampling of the first, by backend."""
+        timed = [row for row in self.main if row["backend"]]
+        alike = [row for row in timed if circumstances(row)[1:] == circumstances(timed[0])[1:]]
+        backends = dict.fromkeys(row["backend"] for row in alike)
+        return tuple(tuple(row for row in alike if row["backend"] == backend) for backend in backends)
+
 
 def _like_first(rows: Sequence[Row], value: Callable[[Row], Any]) -> tuple[Row, ...]:
     known = [row for row in rows if value(row) is not None]

@@ -136,4 +136,5 @@ def _shorten(root: ElementTree.Element) -> None:
     """Coordinates to a hundredth of a point: the rest is half of a file, and nothing that an eye sees."""
     for element in root.iter():
         for key in element.attrib.keys() & {"d", "x", "y", "width", "height", "transform"}:
-            element.set(key, _DECIMALS.sub(lambda number: f"{float(number[0]):.2f}", element.attrib[key]))
+            shorter = _DECIMALS.sub(lambda number: f"{float(number[0]):.2f}", element.attrib[key])
+            element.set(key, " ".join(shorter.split()))

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 
 from ratfit._error import DEFINITIONS
 from ratfit._record import Row
+from ratfit.report.bench import COLUMNS
 from ratfit.report.document import Cell, Code, Column, Details, Table, Text
 from ratfit.report.measured import (
-    COLUMNS,
+    NONE,
+    about_peer,
     count,
+    counted,
     error_remarks,
     gamma,
     name_of,
@@ -34,7 +37,7 @@ class _Shown:
 
 
 def _words(label: str, text: Callable[[Row], str]) -> _Shown:
-    return _Shown(label, lambda row: Cell(text(row)), numeric=False)
+    return _Shown(label, lambda row: Cell(text(row) or NONE), numeric=False)
 
 
 def _epsilon(definition: str) -> _Shown:
@@ -46,11 +49,11 @@ def _epsilon(definition: str) -> _Shown:
 
 
 def _gamma(row: Row) -> Cell:
-    return Cell(gamma(row), row["gamma"], "; ".join(speed_remarks(row)))
+    return Cell(gamma(row), row["gamma"], speed_remarks(row), counted(row))
 
 
 def _nonfinite(row: Row) -> Cell:
-    return Cell(nonfinite(row), row["nonfinite"], "; ".join(error_remarks(row)))
+    return Cell(nonfinite(row), row["nonfinite"], error_remarks(row))
 
 
 def _worst(row: Row) -> Cell:
@@ -58,10 +61,12 @@ def _worst(row: Row) -> Cell:
     return Cell(worst(row), at if isinstance(at, (int, float)) else None)
 
 
-def _per_sample(key: str, label: str) -> _Shown:
+def _milliseconds(key: str, label: str) -> _Shown:
+    """The time of one call, whose samples need not be those that the errors were measured at."""
+
     def cell(row: Row) -> Cell:
-        seconds = row[key] / row["samples"] * 1e9 if row[key] is not None and row["samples"] > 0 else None
-        return Cell(number(seconds), seconds)
+        time = None if row[key] is None else 1e3 * row[key]
+        return Cell(number(time), time)
 
     return _Shown(label, cell)
 
@@ -76,7 +81,7 @@ def _parameter(name: str) -> _Shown:
 
 
 _WHOSE = (
-    _words("method", lambda row: name_of(row).method),
+    _Shown("method", lambda row: Cell(name_of(row).method, aside=about_peer(row)), numeric=False),
     _words("against", lambda row: name_of(row).against),
 )
 _CIRCUMSTANCES = (
@@ -90,8 +95,8 @@ _CIRCUMSTANCES = (
 )
 _SPEED = (
     _Shown("gamma", _gamma),
-    _per_sample("exact_s", "exact, ns"),
-    _per_sample("fit_s", "fit, ns"),
+    _milliseconds("exact_s", "exact, ms"),
+    _milliseconds("fit_s", "fit, ms"),
     _Shown("fit/floor", lambda row: Cell(number(over_floor(row)), over_floor(row))),
 )
 _ENDING = (_Shown("nonfinite", _nonfinite), _Shown("worst at", _worst))
@@ -107,7 +112,7 @@ def rows_table(rows: Sequence[Row], definitions: Sequence[str] = COLUMNS) -> Tab
     shared = [c for c in circumstances if len({c.cell(row) for row in rows}) == 1]
     apart = [c for c in circumstances if c not in shared]
     numbers = (_SPEED[0], *map(_epsilon, definitions), *_ENDING, *_SPEED[1:])
-    said = [c for c in numbers if any(c.cell(row).key is not None or c.cell(row).remark for row in rows)]
+    said = [c for c in numbers if any(c.cell(row).key is not None or c.cell(row).remarks for row in rows)]
     columns = [*apart, *said]
     return Table(
         tuple(Column(c.label, c.numeric) for c in columns),
@@ -117,7 +122,7 @@ def rows_table(rows: Sequence[Row], definitions: Sequence[str] = COLUMNS) -> Tab
 
 
 def _shared_text(said: Sequence[tuple[str, str]]) -> Text:
-    text = ", ".join(f"{label} {value}" for label, value in said if value and label != "regime")
+    text = ", ".join(f"{label} {value}" for label, value in said if value != NONE and label != "regime")
     return f"All rows: {text}." if text else ""
 
 

@@ -37,11 +37,19 @@ _OWN: Mapping[str, str] = {
 _HEADER = """\
 #include <math.h>
 #include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 
 typedef {real} real;
-typedef {bits} bits;
+
+/* A program that is linked with -ffast-math starts by having denormal numbers flushed to zero, some of them a hundred
+   times as slow as others. Here that holds for the time of a call, and the process keeps its own arithmetic. */
+#if defined(__FAST_MATH__) && defined(__SSE__)
+#include <xmmintrin.h>
+#define BEGIN const unsigned kept = _mm_getcsr(); _mm_setcsr(kept | 0x8040);
+#define END _mm_setcsr(kept);
+#else
+#define BEGIN
+#define END
+#endif
 
 static inline real sign(real x) {{ return x > 0 ? 1 : x < 0 ? -1 : x == 0 ? 0 : x; }}
 static inline real heaviside(real x, real at_zero) {{ return x > 0 ? 1 : x < 0 ? 0 : x == 0 ? at_zero : x; }}
@@ -50,27 +58,21 @@ static inline real greater(real x, real y) {{ return x > y || x != x ? x : y; }}
 static inline real principal_cbrt(real x) {{ return x >= 0 ? cbrt{f}(x) : NAN; }}
 static inline real log_gamma(real x) {{ return x < 0 ? NAN : lgamma{f}(x); }}
 
-/* By its bits: -ffast-math would take x != x for false, and a nan must not become the place of a table's entry. */
-static inline int is_nan(real x)
+/* -ffast-math takes it for granted that there is no nan, and might leave out a comparison with one. So it is the
+   whole number that is held below a last place, which no compiler can know: no nan leads out of the entries. */
+static inline real interpolated(const real *entries, unsigned last, real greatest, real position)
 {{
-    bits found;
-    memcpy(&found, &x, sizeof found);
-    return (found & ({sign} - 1)) > {infinity};
-}}
-
-static inline real interpolated(const real *entries, real last, real position)
-{{
-    const real held = lesser(greater(position, 0), last);
+    const real held = lesser(greater(position, 0), greatest);
     const real below = floor{f}(held);
-    const int place = is_nan(position) ? 0 : (int) below;
+    const unsigned found = (unsigned) (int) below;
+    const unsigned place = found < last ? found : last; /* so written that gcc vectorises it */
     return entries[place] + (held - below) * (entries[place + 1] - entries[place]);
 }}
 """
 _TYPES: Mapping[str, Mapping[str, str]] = {
-    "float32": {"real": "float", "bits": "uint32_t", "f": "f", "sign": "0x80000000u", "infinity": "0x7f800000u"},
-    "float64": {"real": "double", "bits": "uint64_t", "f": "", "sign": "0x8000000000000000u",
-                "infinity": "0x7ff0000000000000u"},
-}  # fmt: skip
+    "float32": {"real": "float", "f": "f"},
+    "float64": {"real": "double", "f": ""},
+}
 
 
 def c_source(tapes: Mapping[str, Sequence[Step]], varying: int, dtype: str) -> str:
@@ -112,10 +114,12 @@ def _function(name: str, steps: Sequence[Step], varying: int, dtype: str) -> str
             *tables,
             *arrays,
             *constants,
+            "    BEGIN",
             "    for (size_t i = 0; i < count; i++) {",
             *lines,
             f"        out[i] = {entries[-1]};",
             "    }",
+            "    END",
             "}",
             "",
         )
@@ -124,7 +128,11 @@ def _function(name: str, steps: Sequence[Step], varying: int, dtype: str) -> str
 
 def _table(place: int, step: Step, dtype: str) -> str:
     entries = ", ".join(_number(value, dtype) for value in step.table)
-    return f"    static const real t{place}[{len(step.table)}] = {{{entries}}};"
+    return (
+        f"    static const real t{place}[{len(step.table)}] = {{{entries}}};\n"
+        f"    const volatile unsigned last{place} = {len(step.table) - 2};\n"
+        f"    const unsigned l{place} = last{place};"
+    )
 
 
 def _value(step: Step, place: int, entries: Sequence[str], varying: int, dtype: str) -> str:
@@ -139,7 +147,7 @@ def _value(step: Step, place: int, entries: Sequence[str], varying: int, dtype: 
     if step.operation == "select":
         return "{} ? {} : {}".format(*operands)
     if step.operation == "table":
-        return f"interpolated(t{place}, {len(step.table) - 2}, {operands[0]})"
+        return f"interpolated(t{place}, l{place}, {len(step.table) - 2}, {operands[0]})"
     if step.operation in _INFIX:
         return f" {_INFIX[step.operation]} ".join(operands)
     if step.operation in _PREFIX:

@@ -273,7 +273,7 @@ def test_shapes_blocks_and_dtypes():
 
 @pytest.mark.parametrize(
     ("expression", "named"),
-    [(sp.loggamma(x), "loggamma"), (sp.besselj(0, x), "besselj"), (x + y, "y"), (x + sp.I, "I")],
+    [(sp.loggamma(x), "loggamma"), (sp.besselj(0, x), "besselj"), (sp.pi * x + y, r"y .*\(x\)"), (x + sp.I, "I")],
     ids=str,
 )
 def test_what_has_no_double_double_form_is_refused_by_name(expression, named):

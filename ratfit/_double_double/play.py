@@ -49,9 +49,9 @@ def double_double(expression: sp.Expr, arguments: Sequence[sp.Symbol]) -> Callab
     **Fails** with `RatfitError` for a symbol that is no argument, and for a function without a double-double form.
     """
     named, numbers = _with_numbers_named(without_cancellation(expression))
+    _refuse_unknown(tape(expression, tuple(arguments)), expression)  # in the words of the expression as written
     steps = tape(named, (*arguments, *numbers))
     constants = [_constant(number) for number in numbers.values()]
-    _refuse_unknown(steps, expression)
 
     def function(*values: Any) -> tuple[Array, Array]:
         if len(values) != len(arguments):

@@ -1,7 +1,7 @@
 """Arguments of the circular functions less multiples of pi/2, without loss near those multiples.
 
-A float64 may lie 2**-60 of its size from a multiple: pi/2 is therefore taken in four limbs (the reduction of
-cody1980), and for large arguments, where four limbs end, in integers (payne1983).
+A float64 may lie 2**-60 of its size from a multiple: pi/2 is therefore taken in five limbs of 185 bits together (the
+reduction of cody1980), and for large arguments, where the limbs end, in integers (payne1983), which takes microseconds.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ from functools import cache
 import mpmath
 import numpy as np
 
-from ratfit._double_double.arithmetic import Array, DoubleDouble, settled, two_product, two_sum
+from ratfit._double_double.arithmetic import Array, DoubleDouble, settled, two_sum
 from ratfit._double_double.tables import limbs, pairs
 
-_MEDIUM = 2.0**22
+_MEDIUM = 2.0**20
+_LIMB = 33  # bits: a multiple of a limb by less than 2**20 is exact
 _SCALE = 1074  # every float64 is an integer over 2**1074
 _BITS = 1400  # of 2/pi: what the largest float64 needs and 300 more
 
@@ -25,7 +26,7 @@ def _constants() -> tuple[list[float], int, DoubleDouble]:
     """pi/2 in limbs, 2/pi as an integer over 2**_BITS, pi/2."""
     with mpmath.workprec(_BITS + 100):
         inverse = int(mpmath.floor(mpmath.ldexp(2 / mpmath.pi, _BITS)))
-        return limbs(mpmath.pi / 2, 53, 4), inverse, pairs([mpmath.pi / 2])[0]
+        return limbs(mpmath.pi / 2, _LIMB, 5), inverse, pairs([mpmath.pi / 2])[0]
 
 
 def quarter_turns(x: DoubleDouble) -> tuple[Array, DoubleDouble]:
@@ -47,16 +48,15 @@ def quarter_turns(x: DoubleDouble) -> tuple[Array, DoubleDouble]:
 
 
 def _less_multiples(x: DoubleDouble, n: Array) -> DoubleDouble:
-    first, second, third, fourth = _constants()[0]
-    (a, a_l), (b, b_l), (c, c_l) = (two_product(n, limb) for limb in (first, second, third))
-    # x.high - a is exact: the two are within a factor of 2, or n is 0.
-    return _distilled([x.high - a, -a_l, -b, x.low, -b_l, -c, -c_l, -n * fourth])
+    first, *others = _constants()[0]
+    # The first difference is exact: the two are within a factor of 2, or n is 0 or 1.
+    return _distilled([x.high - n * first, *(-n * limb for limb in others), x.low])
 
 
 def _distilled(terms: Sequence[Array]) -> DoubleDouble:
-    """A sum as if in four times the precision, whatever cancels (ogita2005, Algorithm 4.8, SumK)."""
+    """A sum as if in three times the precision, whatever cancels (ogita2005, Algorithm 4.8, SumK)."""
     parts = list(terms)
-    for _ in range(3):
+    for _ in range(2):
         for place in range(1, len(parts)):
             parts[place], parts[place - 1] = two_sum(parts[place], parts[place - 1])
     rest = parts[0]

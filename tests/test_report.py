@@ -281,7 +281,7 @@ NO_ANSWER = {
 )
 @pytest.mark.filterwarnings("error")
 def test_a_poor_or_extreme_row_still_makes_a_page(changes):
-    document = document_of([row(**changes)])
+    document = document_of([row(**{"gamma": None} | changes)])
     Page(to_html(document))
     to_markdown(document, "report")
 

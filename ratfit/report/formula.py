@@ -29,7 +29,7 @@ def formula(text: str, fit: Mapping[str, Any]) -> Formula:
         drawn = mathml(rounded(parse_expression(text, _symbols(fit))), printer="presentation")
     except RatfitError:
         return Formula(text)  # a record of another version may hold what this one does not read
-    return Formula(text, drawn.replace("<mo>-</mo>", "<mo>−</mo>"))
+    return Formula(text, drawn.replace("<mo>-<", "<mo>−<").replace("<mn>-", "<mn>−"))
 
 
 def _symbols(fit: Mapping[str, Any]) -> dict[str, sp.Symbol]:

@@ -66,7 +66,7 @@ def _general(remark: str) -> str:
 def _kept(conditions: Sequence[dict[str, Any]]) -> Headline:
     kept = sum(condition["holds"] is True for condition in conditions)
     remark = "" if kept == len(conditions) else "see the table of conditions"
-    return Headline(f"{kept} of {len(conditions)}", "conditions kept exactly", remark)
+    return Headline(f"{kept} of {len(conditions)}", "conditions kept", remark)
 
 
 def counts(cost: dict[str, int]) -> str:

@@ -96,8 +96,8 @@ _CIRCUMSTANCES = (
 _SPEED = (
     _Shown("gamma", _gamma),
     _milliseconds("exact_s", "exact, ms"),
-    _milliseconds("fit_s", "fit, ms"),
-    _Shown("fit/floor", lambda row: Cell(number(over_floor(row)), over_floor(row))),
+    _milliseconds("fit_s", "time, ms"),
+    _Shown("time/floor", lambda row: Cell(number(over_floor(row)), over_floor(row))),
 )
 _ENDING = (_Shown("nonfinite", _nonfinite), _Shown("worst at", _worst))
 

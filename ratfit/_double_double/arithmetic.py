@@ -29,8 +29,8 @@ _SMALL, _RAISE = 2.0**-960, 2.0**200
 class DoubleDouble:
     """The number `high + low`, where `high` is the float64 nearest to it; `low` is 0 where `high` is not finite.
 
-    The operators take another `DoubleDouble` or an exact float64. Bounds of their relative errors: sum and difference
-    3 u**2, product 7 u**2, quotient 15 u**2; an integer power n, by repeated products, 7 n u**2.
+    The operators take another `DoubleDouble` or an exact float64. Relative errors, after joldes2017: sum and
+    difference 3 u**2, product 7 u**2, quotient 15 u**2; an integer power n, by repeated products, 7 n u**2.
     """
 
     high: Array
@@ -135,7 +135,7 @@ def _sum(x: DoubleDouble, y_h: Array, y_l: Array) -> DoubleDouble:
 
 
 def _quotient(x: DoubleDouble, y: DoubleDouble | Array) -> DoubleDouble:
-    """joldes2017, Algorithm 17, DWDivDW2, for an x whose rounding errors float64 holds."""
+    """After joldes2017, Algorithm 17, DWDivDW2, for an x whose rounding errors float64 holds."""
     divisor, rest = (y.high, y.low) if isinstance(y, DoubleDouble) else (y, 0.0)
     quotient = x.high / divisor
     c_h, c_l = two_product(quotient, divisor)
@@ -144,7 +144,7 @@ def _quotient(x: DoubleDouble, y: DoubleDouble | Array) -> DoubleDouble:
 
 
 def square_root(x: DoubleDouble) -> DoubleDouble:
-    """One step of Newton from float64's root (hida2001, Sec. 3.5): relative error 4 u**2; nan below 0."""
+    """One step of Newton from float64's root (hida2001): relative error 4 u**2; nan below 0."""
     raised = np.where(x.high < _SMALL, _RAISE, 1.0)
     x = x.scaled(raised)
     s = np.sqrt(x.high)

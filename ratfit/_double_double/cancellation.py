@@ -25,7 +25,7 @@ def _of_exponential(node: sp.Expr) -> sp.Expr:
     return sp.tanh(node.args[0] / 2) * (node + 1)
 
 
-# f(u) -> f(u) - 1 (abramowitz1964, 4.3.25, 4.5.31 and 7.1.2).
+# f(u) -> f(u) - 1, by the formulas of half the angle and the definitions.
 _LESS_ONE: Mapping[type, Callable[[sp.Expr], sp.Expr]] = {
     sp.cos: _square_of_half(sp.sin, -2),
     sp.cosh: _square_of_half(sp.sinh, 2),

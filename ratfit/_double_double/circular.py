@@ -1,7 +1,7 @@
 """sin, cos, tan and their inverses in double-double.
 
 sin: x = n pi/2 + c + s, c the nearest multiple of 1/256, and sin(x) = A cos(s) + B sin(s) with A = sin(n pi/2 + c),
-B = cos(n pi/2 + c) from a table (hida2001, Sec. 4.2, with a finer table). The inverses take float64's angle and turn
+B = cos(n pi/2 + c) from a table (hida2001, with a finer table). The inverses take float64's angle and turn
 back by it: what is left is so small that it is its own tangent.
 """
 

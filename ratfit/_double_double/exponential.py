@@ -1,7 +1,7 @@
 """exp and the hyperbolic functions in double-double, and expm1, on which the latter stand near 0.
 
 exp: x = n ln2/256 + s with |s| <= ln2/512, so that exp(x) = 2**k T_j exp(s), n = 256 k + j, T_j = 2**(j/256) from a
-table and exp(s) from its series (the reduction of tang1989 and of hida2001, Sec. 4.1, with a finer table).
+table and exp(s) from its series (the reduction of tang1989 and of hida2001, with a finer table).
 """
 
 from __future__ import annotations

@@ -159,7 +159,8 @@ def _record(
     if backend:
         timed = measure_speed(job.measured, backend=backend, samples=TIMED, dtype=error.dtype, **given)
         speed = {key: getattr(timed, key) for key in speed}
-        notes.append(timed.note)
+        few = f"gamma is of {TIMED:,} samples" if timed.exact_s and error.samples != TIMED else ""
+        notes += [timed.note, few]
     return Record(
         name=job.name,
         parameters=error.parameters,

@@ -117,7 +117,7 @@ BAD = [
     (["bench", "eq12", "--coordinator", "nowhere", "--processes", "2", "--process", "0"], "10.0.0.1"),
     (["bench", "eq12", "--coordinator", "localhost:1", "--processes", "2", "--process", "2"], "from 0 to 1"),
     (["report"], "which rows"),
-    (["report", "/no/such/rows.jsonl"], "no such file"),
+    (["report", "/no/such/rows.jsonl"], "no file"),
     (["bench", "eq12", "--sampling", "unifrom"], "uniform"),
     (["bench", "eq12", "--backend", "abacus"], "jax-cpu"),
     (["bench", "eq19", "--set", "m=3"], "range"),

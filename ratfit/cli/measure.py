@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from ratfit._bench import Job
     from ratfit.report.bench import Run
 
+SAMPLES = 1_000_000
+
 BACKEND_HELP = """Time there alone (may be repeated): jax-cpu, jax-gpu, numpy, c-scalar, c-fast, cost-model; or none,
 for the errors alone. Left out: all that this machine has."""
 
@@ -115,7 +117,8 @@ def _run(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str,
     from ratfit._sampling import check_protocol
     from ratfit.report.bench import Run
 
-    samples = None if options["exhaustive"] else options["samples"] or 1_000_000
+    asked = SAMPLES if options["samples"] is None else options["samples"]
+    samples = None if options["exhaustive"] else asked
     sampling = "exhaustive" if options["exhaustive"] else options["sampling"]
     check_protocol(sampling, samples, options["seed"], options["dtype"])
     how = Measuring(samples, options["seed"], sampling, options["dtype"])

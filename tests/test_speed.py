@@ -222,6 +222,7 @@ DIFFICULT = {
     "is a constant": (sp.Integer(7) / 3, 0, 1),
     "is its variable": (x, -1, 1),
     "spans the numbers": (sp.exp(85 * x), -1, 1),
+    "magnifies, beyond float32": (sp.exp(sp.gamma(x)), 0, 2),
     "oscillates": (sp.sin(1000 * x), 0, 1),
 }
 

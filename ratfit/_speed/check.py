@@ -4,18 +4,19 @@ The very arrays that the last timed calls returned are compared with an evaluati
 at the same points. How far they may be off depends on the formula, not on its value alone: where it loses digits, every
 arithmetic loses them. So NumPy evaluates it in the dtype under test too, and its greatest error in a part of the
 domain, times `MARGIN`, is what the output may be off there. For float64, in which the reference itself rounds, that
-error is inferred from float32's.
+error is inferred from float32's and from neighbouring samples.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from ratfit._speed.contest import Contest, Entrant
 
-MARGIN = 16  # other orders of a sum, a rounding less or more, functions good to 4 units in the last place
+MARGIN = (
+    64  # other orders of a sum, a rounding less or more, functions of another library: JAX's gamma is off by 40 units
+)
 PARTS = (256, 1000)  # at most so many parts of the domain, of at least so many samples each on the average
 STRAY = 10_000  # one sample in so many may fall to the other side of a threshold or of an overflow
 CHUNK = 2**18
@@ -74,34 +75,40 @@ def _words(entrant: Entrant, contest: Contest, found: Any, expected: _Expected, 
 def _expected(entrant: Entrant, contest: Contest) -> _Expected:
     import numpy as np
 
-    exact = _evaluated(entrant, contest, "float64")
-    own = exact if contest.dtype == "float64" else _evaluated(entrant, contest, contest.dtype)
-    coarse = own if contest.dtype != "float64" else _evaluated(entrant, contest, "float32")
+    exact = _evaluated(entrant, contest.samples, "float64")
+    own = exact if contest.dtype == "float64" else _evaluated(entrant, contest.samples, contest.dtype)
     parts, count = _parts(contest)
-    with np.errstate(invalid="ignore"):
-        lost = _greatest(np.abs(coarse - exact), parts, count)
-    size = _greatest(np.abs(exact), parts, count)
-    kind = np.finfo(contest.dtype)
     if contest.dtype == "float64":
-        # Where float32 has lost its digits it bounds nothing: half the digits of float64 are asked for there.
-        lost = np.where(lost > 2.0**-8 * size, np.sqrt(kind.eps) * size, lost * (kind.eps / np.finfo("float32").eps))
+        lost = _inferred(entrant, contest, exact, parts, count)
+    else:
+        lost = _greatest(own, exact, parts, count)
+    kind = np.finfo(contest.dtype)
     # A step below the least normal number may have been flushed to 0; a later step may have magnified what it lost.
     allowed = MARGIN * (lost[parts] + kind.eps * np.abs(exact)) + kind.tiny / kind.eps
     return _Expected(exact, own, np.where(np.isfinite(allowed), allowed, MARGIN * lost[parts]))
 
 
-def _evaluated(entrant: Entrant, contest: Contest, dtype: str) -> Any:
+def _inferred(entrant: Entrant, contest: Contest, exact: Any, parts: Any, count: int) -> Any:
+    """What float64 loses in each part: what the next sample changes, and what float32 loses, by as many digits less."""
+    import numpy as np
+
+    single, double = np.finfo("float32").eps, np.finfo("float64").eps
+    lost = _greatest(_evaluated(entrant, contest.samples, "float32"), exact, parts, count)
+    size = _greatest(exact, np.zeros_like(exact), parts, count)
+    # Where float32 has lost its digits it bounds nothing: half the digits of float64 are asked for there.
+    inferred = np.where(lost > 2.0**-8 * size, np.sqrt(double) * size, lost * (double / single))
+    next_samples = tuple(np.nextafter(array, np.inf) for array in contest.samples)
+    return np.maximum(inferred, _greatest(_evaluated(entrant, next_samples, "float64"), exact, parts, count))
+
+
+def _evaluated(entrant: Entrant, samples: tuple[Any, ...], dtype: str) -> Any:
     """The formula on NumPy in a dtype, in chunks: its tape holds an array for each step."""
     import numpy as np
 
     function, constants = entrant.function(), tuple(entrant.rounded(dtype))
-    chunks = [np.asarray(function(*samples, *constants), float) for samples in _chunks(contest, dtype)]
-    return np.concatenate(chunks)
-
-
-def _chunks(contest: Contest, dtype: str) -> Iterator[tuple[Any, ...]]:
-    for start in range(0, contest.samples[0].size, CHUNK):
-        yield tuple(array[start : start + CHUNK].astype(dtype) for array in contest.samples)
+    starts = range(0, samples[0].size, CHUNK)
+    chunks = (tuple(array[start : start + CHUNK].astype(dtype) for array in samples) for start in starts)
+    return np.concatenate([np.asarray(function(*chunk, *constants), float) for chunk in chunks])
 
 
 def _parts(contest: Contest) -> tuple[Any, int]:
@@ -115,10 +122,12 @@ def _parts(contest: Contest) -> tuple[Any, int]:
     return np.clip((points - low) * (count / (high - low)), 0, count - 1).astype(int), count
 
 
-def _greatest(values: Any, parts: Any, count: int) -> Any:
-    """The greatest finite value in each part; 0 where there is none."""
+def _greatest(first: Any, second: Any, parts: Any, count: int) -> Any:
+    """The greatest finite distance of two evaluations in each part; 0 where there is none."""
     import numpy as np
 
     greatest = np.zeros(count)
-    np.maximum.at(greatest, parts, np.where(np.isfinite(values), values, 0))
+    with np.errstate(invalid="ignore", over="ignore"):
+        apart = np.abs(first - second)
+    np.maximum.at(greatest, parts, np.where(np.isfinite(apart), apart, 0))
     return greatest

@@ -30,7 +30,7 @@ def error_curve(place: Setting, dtype: str) -> dict[str, Any]:
     inside = (np.arange(POINTS) + 0.5) / POINTS
     points = (edges[:-1, None] + np.diff(edges)[:, None] * inside).astype(dtype)
     fit, exact = values_at(place, points, dtype, middle)
-    error = _finite(fit.astype(float) - exact)
+    error = _difference(fit, exact)
     centre_fit, centre_exact = values_at(place, points[:, POINTS // 2], dtype, middle)
     moving = {
         symbol.name: _over(place, points, dtype, middle, symbol, np.linspace(low, high, VALUES))
@@ -41,7 +41,7 @@ def error_curve(place: Setting, dtype: str) -> dict[str, Any]:
         "edges": edges.tolist(),
         "exact": _plain(_finite(centre_exact)),
         "fit": _plain(_finite(centre_fit.astype(float))),
-        "bias": _plain(np.ma.mean(error, axis=1)),
+        "bias": _plain(POINTS * np.ma.mean(error / POINTS, axis=1)),  # no sum is beyond the numbers where no error is
         "absolute_max": _plain(np.ma.max(abs(error), axis=1)),
         "parameters": moving,
     }
@@ -53,7 +53,7 @@ def _over(place: Setting, points: Any, dtype: str, middle: Any, symbol: Any, val
     worst = []
     for value in values:
         fit, exact = values_at(place, points, dtype, {**middle, symbol: value})
-        worst.append(np.ma.max(abs(_finite(fit.astype(float) - exact))))
+        worst.append(np.ma.max(abs(_difference(fit, exact))))
     return {"values": values.tolist(), "absolute_max": _plain(np.ma.array(worst))}
 
 
@@ -69,6 +69,13 @@ def values_at(place: Setting, points: Any, dtype: str, drawn: Any) -> tuple[Any,
         symbols = (place.variable, *(symbol for symbol, _ in hoisted.constants))
         found.append(lower(hoisted.result, symbols, "numpy", hoisted.steps)(points.astype(kind), *constants))
     return found[0], found[1]
+
+
+def _difference(fit: Any, exact: Any) -> Any:
+    import numpy as np
+
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _finite(fit.astype(float) - exact)
 
 
 def _finite(values: Any) -> Any:

@@ -17,10 +17,15 @@ def machine() -> dict[str, Any]:
     packages = {name: _version(name) for name in ("numpy", "jax", "sympy")}
     return {
         "processor": _processor(),
-        "cores": len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count(),
+        "cores": cores(),
         "devices": _devices(),
         "versions": {"python": platform.python_version(), **packages, "ratfit": ratfit_version()},
     }
+
+
+def cores() -> int:
+    """The cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
 
 
 def ratfit_version() -> str:

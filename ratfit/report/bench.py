@@ -9,7 +9,7 @@ from typing import Any
 import ratfit
 from ratfit._bench import Job, Measuring, asked, is_timed, measure
 from ratfit._error import Watch
-from ratfit._error.devices import as_first_says, is_first
+from ratfit._error.machines import as_first_says, is_first
 from ratfit._record import (
     PROTOCOL,
     Row,

@@ -1,0 +1,155 @@
+"""Which measure of error a printed figure may be: the search through all of them, and what such a search is worth.
+
+Among hundreds of combinations of definition, protocol and setting some lie near any figure by chance. So the number of
+combinations that were looked through, and of those that round to the figure, goes with every answer.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from decimal import Decimal
+
+SAME_DRAW: Mapping[tuple[str, str], str] = {
+    **{("Eq. 12", protocol): "uniform" for protocol in ("angle", "cosine", "in-plane", "hemisphere")},
+    ("Eq. 19", "in-plane"): "angle",
+    ("Eq. 19", "hemisphere"): "uniform",
+    ("Eq. 16", "uniform"): "hemisphere",
+    ("Eq. 16", "angle"): "in-plane",
+}
+"""What an equation is measured under where all are to be drawn alike, and it has no such protocol.
+
+No direction stands behind the sine. Of directions over the hemisphere the cosines to the normal are uniform, of those
+in a plane the angles are.
+"""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """The errors of an equation, measured once: by which protocol, at which setting, against which exact function."""
+
+    place: str
+    protocol: str
+    setting: str
+    is_random: bool  # every sample draws its own parameters
+    against: str  # empty: the function that the paper approximates
+    epsilon: Mapping[str, float | None]
+
+
+@dataclass(frozen=True)
+class Match:
+    """One number that may be what was printed; `alike` are further definitions that give it at the same finding."""
+
+    finding: Finding
+    definition: str
+    value: float
+    distance: float
+    alike: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Closest:
+    """The best match for a printed figure, of how many, and how many of them round to the figure as it is printed."""
+
+    match: Match
+    tried: int
+    rounding: int
+
+
+@dataclass(frozen=True)
+class Common:
+    """One definition and protocol for all equations: what each is under it, and the greatest distance of any."""
+
+    definition: str
+    protocol: str
+    is_random: bool  # settings pooled by drawing them at random; else the mean over those of the figures
+    values: Mapping[str, float]
+    distances: Mapping[str, float]
+
+    @property
+    def distance(self) -> float:
+        return max(self.distances.values())
+
+
+def distance(found: float | None, printed: float) -> float:
+    """By which factor two figures differ, 1 or more; infinite for what is no such figure: 0, a negative mean, none."""
+    if found is None or not 0 < found < math.inf:
+        return math.inf
+    return max(found / printed, printed / found)
+
+
+def rounds_to(found: float, printed: float) -> bool:
+    """Whether a number, rounded to the digits that were printed, is what was printed: 0.0136 is 0.014."""
+    figure = Decimal(str(printed))
+    unit = Decimal(1).scaleb(int(figure.as_tuple().exponent))
+    return abs(Decimal(found) - figure) <= unit / 2
+
+
+def is_fraction(definition: str) -> bool:
+    """Whether an eps under this definition could be printed in percent: one in units in the last place could not."""
+    return not definition.startswith("ulp_")
+
+
+def closest(findings: Sequence[Finding], printed: float) -> Closest | None:
+    """The number nearest to a printed figure, of all definitions of all findings; None where there is none.
+
+    Of equally near ones the first is taken. Of definitions that give the same to ALIKE, the one that is named divides
+    by something, because a percentage is of something; the others are said beside it.
+    """
+    tried = [
+        Match(finding, definition, value, distance(value, printed))
+        for finding in findings
+        for definition, value in finding.epsilon.items()
+        if is_fraction(definition) and value is not None
+    ]
+    near = [match for match in tried if match.distance < math.inf]
+    if not near:
+        return None
+    rounding = sum(rounds_to(match.value, printed) for match in near)
+    return Closest(_named(min(near, key=lambda match: match.distance), near), len(tried), rounding)
+
+
+ALIKE = 1e-4
+"""Relative difference of numbers that are told as one: between the definitions of a target whose peak is 1, say."""
+
+
+def _named(best: Match, near: Sequence[Match]) -> Match:
+    """The best match under the name that a percentage would have."""
+    same = [m for m in near if m.finding is best.finding and abs(m.value - best.value) <= ALIKE * best.value]
+    first, *others = sorted(same, key=lambda match: match.definition.startswith("absolute_"))
+    return replace(first, alike=tuple(match.definition for match in others))
+
+
+def common(findings: Sequence[Finding], printed: Mapping[str, float], protocols: Sequence[str]) -> list[Common]:
+    """Every way to measure all equations alike, the one with the least greatest distance first.
+
+    **Arguments:** the findings, those of corrected functions not counted; the `printed` figure of each place; the
+    `protocols` to go through. A way that some equation has no number for is left out.
+    """
+    own = [finding for finding in findings if not finding.against and finding.place in printed]
+    definitions = dict.fromkeys(name for finding in own for name in finding.epsilon if is_fraction(name))
+    found = []
+    for protocol in protocols:
+        for is_random in (False, True):
+            pools = {place: _pool(own, place, protocol, is_random) for place in printed}
+            for definition in definitions:
+                values = {place: _pooled(pool, definition) for place, pool in pools.items()}
+                distances = {place: distance(values[place], printed[place]) for place in printed}
+                known = {place: value for place, value in values.items() if value is not None}
+                if max(distances.values()) < math.inf:
+                    found.append(Common(definition, protocol, is_random, known, distances))
+    return sorted(found, key=lambda way: way.distance)
+
+
+def _pool(findings: Sequence[Finding], place: str, protocol: str, is_random: bool) -> list[Finding]:
+    """The findings of a place that one number is made of; a material cannot be drawn at random."""
+    drawn = SAME_DRAW.get((place, protocol), protocol)
+    here = [finding for finding in findings if finding.place == place and finding.protocol == drawn]
+    chosen = [finding for finding in here if finding.is_random == is_random]
+    return chosen or ([] if any(finding.is_random for finding in here) else here)
+
+
+def _pooled(pool: Sequence[Finding], definition: str) -> float | None:
+    values = [value for finding in pool if (value := finding.epsilon.get(definition)) is not None]
+    return math.fsum(values) / len(values) if pool and len(values) == len(pool) else None

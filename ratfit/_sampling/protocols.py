@@ -43,9 +43,7 @@ class Carrier:
 
 
 def uniform(fraction: Any, ends: Ends) -> Any:
-    # Not settled, so that these points stay what they always were: where low is not 0, a machine without a fused
-    # multiply-add has other last bits in float64.
-    return ends.low + (ends.high - ends.low) * fraction
+    return ends.low + product(ends.high - ends.low, fraction)
 
 
 def _variable(coordinate: Coordinate, ends: Ends) -> Any:

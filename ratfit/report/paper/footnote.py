@@ -65,7 +65,7 @@ def in_plane() -> Stated:
 
 
 def on_hemisphere() -> Stated:
-    """V and V' uniform over the hemisphere: heights v and w uniform on (0, 1), phi between their azimuths on (0, pi)."""
+    """V and V' uniform over the hemisphere: heights v, w uniform on (0, 1), phi between their azimuths on (0, pi)."""
     v = sp.Symbol("v", real=True)
     w, phi = parameter("w", 0, 1), parameter("phi", 0, sp.pi * _SHORT)
     sines = sp.sqrt((1 - v**2) * (1 - w**2))

@@ -48,7 +48,6 @@ def _sentences(found: Sequence[Timed], printed: Mapping[str, float]) -> Iterator
         known = [(row["gamma"], row["backend"]) for task, row in found if task.place == place and row["gamma"]]
         if known:
             (low, slowest), (high, fastest) = min(known), max(known)
-            words = "lies among them" if low <= figure <= high else "lies outside"
-            yield (
-                f"{place}: {number(low)} ({slowest}) to {number(high)} ({fastest}); the printed {number(figure)} {words}."
-            )
+            lies = "lies among them" if low <= figure <= high else "lies outside"
+            span = f"{number(low)} ({slowest}) to {number(high)} ({fastest})"
+            yield f"{place}: {span}; the printed {number(figure)} {lies}."

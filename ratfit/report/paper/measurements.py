@@ -101,7 +101,7 @@ def _references(shown: Card, protocol: str) -> list[str | None]:
     return [None, *names] if protocol == PLAIN else [None]
 
 
-def _settings(shown: Card) -> Iterator[dict[str, Value]]:
+def _settings(shown: Card) -> Iterator[Mapping[str, Value]]:
     """The figures' values of the parameters, then random ones; a material brings its own."""
     if not shown.settings:
         yield {}
@@ -117,7 +117,7 @@ def footnote_tasks(samples: int, seed: int) -> list[Task]:
     for protocol, stated in (("in-plane", in_plane()), ("hemisphere", on_hemisphere())):
         pair: dict[str, Value] = dict.fromkeys(stated.drawn, RANDOM)
         for values in _settings(card("smith")):
-            found.append(Task(PLACE, _stated(stated, pair | values, None), protocol, how))
+            found.append(Task(PLACE, _stated(stated, {**pair, **values}, None), protocol, how))
         for reference in stated.problem.references:
             found.append(Task(PLACE, _stated(stated, pair | {"m": RANDOM}, reference.name), protocol, how))
     return found

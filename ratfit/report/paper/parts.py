@@ -39,16 +39,14 @@ def equation(derived: Derived, findings: Sequence[Finding]) -> Section:
     ]
     own = [finding for finding in findings if not finding.against]
     blocks: list[Block] = [Facts(tuple(pairs))]
-    if own:
-        blocks.append(errors_table(own))
     if own and shown.epsilon is not None:
-        blocks.append(Paragraph(closest_sentence(searched(own), shown.epsilon)))
+        blocks += [errors_table(own), Paragraph(closest_sentence(searched(own), shown.epsilon))]
     return Section(f"{shown.place}: {shown.title}", tuple(blocks))
 
 
 def searched(findings: Sequence[Finding]) -> list[Finding]:
-    """The findings that a figure is looked for in: a check on another protocol is no protocol of its own."""
-    return [finding for finding in findings if finding.protocol != CHECK]
+    """The findings that a figure is looked for in: those of the paper's own functions, and no check on a protocol."""
+    return [finding for finding in findings if finding.protocol != CHECK and not finding.against]
 
 
 def _operations(operations: Mapping[str, int] | None) -> str:
@@ -131,8 +129,8 @@ def common_part(every: Sequence[Common], without: Sequence[Common], printed: Map
 
 POOLED = """\
 One definition and one protocol for all equations; the settings of each are drawn at random or averaged over those of \
-the figures. No direction stands behind the sine: it is uniform throughout. The distance of a way is the greatest factor \
-by which one of its numbers differs from what was printed."""
+the figures. No direction stands behind the sine: it is uniform throughout. A way is as far off as the one of its \
+numbers that differs by the greatest factor from what was printed."""
 
 
 def _common_sentence(ways: Sequence[Common]) -> str:
@@ -198,15 +196,14 @@ def _closest_rows(findings: Sequence[Finding], printed: Mapping[str, float]) -> 
 def footnote_part(findings: Sequence[Finding], printed: float, sine: str | None) -> Section:
     """Eq. 16 in place of Smith's function; `sine` is the definition that gives the sine's figure."""
     blocks: list[Block] = [Paragraph(FOOTNOTE), errors_table(findings)]
-    blocks.append(Paragraph(closest_sentence(findings, printed)))
+    blocks.append(Paragraph(closest_sentence(searched(findings), printed)))
     values = [v for f in findings if sine and (v := f.epsilon.get(sine)) is not None]
     if values and sine:
         low, high = min(values), max(values)
         reach = "out of its reach" if high < printed or low > printed else "within its range"
+        span = f"{number(low)} to {number(high)}"
         blocks.append(
-            Paragraph(
-                f"Under {sine}, the sine's own, Eq. 16 is off by {number(low)} to {number(high)}: {percent(printed)} is {reach}."
-            )
+            Paragraph(f"Under {sine}, which fits the sine best, it is {span}: {percent(printed)} is {reach}.")
         )
     return Section("Footnote 3: Eq. 16 in place of Smith's function", tuple(blocks))
 
@@ -219,16 +216,15 @@ a plane with the normal, both angles uniform, and over the hemisphere."""
 def smith_part(findings: Sequence[Finding]) -> Section:
     """What Eq. 19 costs against the function it was made for, against Smith's own and against the one used today."""
     names = ("peak_mean", "peak_max", "relative_max")
-    own = [f for f in findings if f.protocol == "uniform"]
-    functions = list(dict.fromkeys(f.against for f in own))
-    head = (Column("m"), *(Column(f"{n}, {g or 'as printed'}", True) for n in names for g in functions))
-    rows = []
-    for setting in dict.fromkeys(f.setting for f in own):
-        of = {f.against: f.epsilon for f in own if f.setting == setting}
-        values = [of.get(function, {}).get(name) for name in names for function in functions]
-        rows.append((Cell(setting.removeprefix("m ").removeprefix("= ")), *(Cell(number(v), v) for v in values)))
+    own = [finding for finding in findings if finding.protocol == "uniform" and not finding.is_random]
+    functions = list(dict.fromkeys(finding.against for finding in own))
+    head = (Column("Eq. 19 against"), Column("at"), *(Column(name, True) for name in names))
+    rows = tuple(
+        (Cell(f.against or "as printed"), Cell(f.setting), *(Cell(number(v), v) for v in map(f.epsilon.get, names)))
+        for f in own
+    )
     said = [Paragraph(line) for line in _smith_sentences(own, functions)]
-    return Section("Smith three ways", (Table(head, tuple(rows)), *said))
+    return Section("Smith three ways", (Table(head, rows), *said))
 
 
 def _smith_sentences(findings: Sequence[Finding], functions: Sequence[str]) -> Iterator[str]:
@@ -241,6 +237,6 @@ def _smith_sentences(findings: Sequence[Finding], functions: Sequence[str]) -> I
         ]
         if known and times:
             yield (
-                f"Against {function} Eq. 19 is off by {number(min(known))} to {number(max(known))} of the peak on the "
-                f"average: {number(min(times))} to {number(max(times))} times what it is against Eq. 18, which it was made for."
+                f"Against {function} Eq. 19 is off by {number(min(known))} to {number(max(known))} (peak_mean): "
+                f"{number(min(times))} to {number(max(times))} times what it is against Eq. 18, which it was made for."
             )

@@ -159,8 +159,8 @@ def lead(samples: int, seed: int) -> str:
     """What the whole is, for the top of page and terminal."""
     return (
         "The approximations of Schlick 1994, derived from their kernel conditions and measured on\n"
-        f"{samples:,} samples (seed {seed}) in {DTYPE}. eps is a fraction, and depends on its definition, on how the\n"
-        "samples are drawn and on the parameters; gamma is exact time / fit time. The paper defines neither of its figures."
+        f"{samples:,} samples (seed {seed}) in {DTYPE}. eps is a fraction; it depends on its definition, on how the\n"
+        "samples are drawn and on the parameters. gamma is exact time / fit time. The paper defines neither figure."
     )
 
 
@@ -204,8 +204,8 @@ def _closest_part(results: Results) -> Section:
 
 
 CHANCE = """\
-For each printed eps the nearest of all definitions, protocols and settings that were measured. Among so many something \
-comes near by chance: a match explains a figure only where few others round to it as well."""
+For each printed eps the nearest of all definitions, protocols and settings that were measured. Among so many \
+something comes near by chance: a match explains a figure only where few others round to it as well."""
 
 
 def _common_part(results: Results) -> Section:

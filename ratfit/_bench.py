@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
 from ratfit._error import ErrorMeasurement, Watch, measure_error
+from ratfit._error.measure import named
 from ratfit._fit import Fit
+from ratfit._parse import RatfitError
 from ratfit._record import Record
 from ratfit._sampling import count, resolve
 from ratfit._setting import RANDOM, Setting, Value, setting
@@ -29,6 +31,7 @@ class Job:
     fit: Fit
     parameters: Mapping[str, Value]
     reference: str | None
+    within: tuple[float, float] | None = None
     peer: Peer | None = None
 
     @property
@@ -45,7 +48,7 @@ class Job:
     @property
     def place(self) -> Setting:
         """Formula, exact function, values and domain."""
-        return setting(self.measured, self.parameters, self.reference)
+        return setting(self.measured, self.parameters, self.reference, self.within)
 
     @cached_property
     def formula(self) -> str:
@@ -64,20 +67,24 @@ class Measuring:
     dtype: str
 
 
-def jobs(fit: Fit, settings: Sequence[Mapping[str, sp.Expr | Value]] = ()) -> list[Job]:
+def jobs(
+    fit: Fit, settings: Sequence[Mapping[str, sp.Expr | Value]] = (), within: tuple[float, float] | None = None
+) -> list[Job]:
     """Every job of a fit: its target, when it has one, and its references, at each of the settings.
 
     Without settings the parameters take the low end, the middle and the high end of their ranges; values that a
-    reference gives are left to it.
+    reference gives are left to it. **Fails** with `RatfitError` where there is nothing exact to measure against.
     """
     problem = fit.problem
     against = ([None] if problem.target is not None else []) + [r.name for r in problem.references]
+    if not against:
+        raise RatfitError(f"{problem.name} has nothing exact to measure against: add a target, or a [[reference]]")
     given = {r.name: {s.name for s in r.parameters} for r in problem.references}
     found = []
     for reference in against:
         for values in settings or _ends_and_middle(fit):
             kept = {n: _value(v) for n, v in values.items() if n not in given.get(reference or "", set())}
-            job = Job(fit, kept, reference)
+            job = Job(fit, kept, reference, within)
             if job not in found:
                 found.append(job)
     return found
@@ -103,7 +110,7 @@ def peer_jobs(found: Sequence[Job]) -> tuple[list[Job], list[tuple[str, str]]]:
         if RANDOM in job.parameters.values():
             missing["peers"] = "one is made for values of the parameters, not for random ones"
             continue
-        for peer in peers(job.fit, job.parameters, job.reference):
+        for peer in peers(job.fit, job.parameters, job.reference, job.within):
             if isinstance(peer, Unavailable):
                 missing.setdefault(f"{job.name}~{peer.name}", peer.reason)
             else:
@@ -121,9 +128,9 @@ def asked(job: Job, how: Measuring, backend: str) -> dict[str, Any]:
     place = job.place
     sampling = resolve(how.sampling, place.variable.name, place.low, place.high, how.dtype)
     samples = count(place.low, place.high, how.dtype) if how.samples is None else how.samples
+    said = {"samples": samples, "sampling": named(sampling, job.within), "seed": how.seed, "dtype": how.dtype}
     return {
-        **asdict(how), "samples": samples, "sampling": sampling, "name": job.name, "parameters": place.parameters,
-        "backend": backend, "formula": job.formula,
+        **said, "name": job.name, "parameters": place.parameters, "backend": backend, "formula": job.formula,
     }  # fmt: skip
 
 
@@ -142,7 +149,9 @@ def measure(
     backend; `about` gives further fields of the records (command, fit, published); `watch` is for the errors, and
     `say` is told what goes on.
     """
-    given: dict[str, Any] = {"parameters": job.parameters, "reference": job.reference, "seed": how.seed}
+    given: dict[str, Any] = {
+        "parameters": job.parameters, "reference": job.reference, "within": job.within, "seed": how.seed,
+    }  # fmt: skip
     error = measure_error(
         job.measured, samples=how.samples, sampling=how.sampling, dtype=how.dtype, watch=watch, **given
     )

@@ -46,7 +46,12 @@ class Setting:
         return (self.variable, *self.ranges)
 
 
-def setting(fit: Any, parameters: Mapping[str, Value] | None = None, reference: str | None = None) -> Setting:
+def setting(
+    fit: Any,
+    parameters: Mapping[str, Value] | None = None,
+    reference: str | None = None,
+    within: tuple[float, float] | None = None,
+) -> Setting:
     """What is measured when this fit is, at these parameter values.
 
     **Arguments:**
@@ -56,9 +61,10 @@ def setting(fit: Any, parameters: Mapping[str, Value] | None = None, reference: 
     - `parameters`: the value of each parameter by name, or `"random"`: each sample then draws one from its range,
       uniformly. A value that the reference gives may be left out.
     - `reference`: the name of one of the problem's references; without one the target is the exact function.
+    - `within`: the part of the domain to measure on, `(low, high)`; left out, all of it.
 
-    **Fails** with `RatfitError` where there is nothing exact to compare with, and for a value that is missing, unknown,
-    outside its range or in contradiction with the reference.
+    **Fails** with `RatfitError` where there is nothing exact to compare with, for a value that is missing, unknown,
+    outside its range or in contradiction with the reference, and for an infinite interval.
     """
     problem = fit.problem
     asked = dict(parameters or {})
@@ -69,10 +75,22 @@ def setting(fit: Any, parameters: Mapping[str, Value] | None = None, reference: 
         if parameter not in ranges:
             _check_range(parameter, values)
     _check_free(fit, {*values, *ranges})
-    low, high = (_number(end, values, "the domain", ranges) for end in problem.domain)
-    if not -math.inf < low < high < math.inf:
-        raise RatfitError(f"the domain [{low}, {high}] cannot be sampled: measure on finite ends, low < high")
+    low, high = _interval(tuple(_number(end, values, "the domain", ranges) for end in problem.domain), within)
     return Setting(exact, fit.formula, arranged(fit), problem.variable, values, ranges, low, high)
+
+
+def _interval(domain: tuple[float, ...], within: tuple[float, float] | None) -> tuple[float, float]:
+    low, high = within or domain
+    if not -math.inf < low < high < math.inf:
+        where = "this part of it" if within else "the domain"
+        raise RatfitError(
+            f"{where}, [{low}, {high}], cannot be sampled: measure within finite ends, as in --within 0 9"
+        )
+    if not domain[0] <= low < high <= domain[1]:
+        raise RatfitError(
+            f"[{low}, {high}] is not inside the domain [{domain[0]}, {domain[1]}]: measure on a part of it"
+        )
+    return low, high
 
 
 def arranged(fit: Any) -> Program:

@@ -24,6 +24,10 @@ from ratfit._sampling import bounds, check_protocol, count, drawing, resolve
 from ratfit._setting import Setting, Value, setting
 
 
+VANISHING = 1000.0
+"""A relative error that says more of how small the exact function is than of the fit."""
+
+
 @dataclass(frozen=True)
 class ErrorMeasurement:
     """The errors of a fit under every definition, with all that it takes to measure them again.
@@ -62,6 +66,7 @@ def measure_error(
     dtype: str = "float32",
     parameters: Mapping[str, Value] | None = None,
     reference: str | None = None,
+    within: tuple[float, float] | None = None,
     quantiles: bool = True,
     watch: Watch | None = None,
 ) -> ErrorMeasurement:
@@ -76,6 +81,7 @@ def measure_error(
       `exhaustive` in double-double where float64 would not do.
     - `parameters`: the values of the problem's parameters by name, or `"random"`: drawn anew for every sample.
     - `reference`: the name of the problem's reference to compare with, in place of the target.
+    - `within`: the part of the domain to measure on, `(low, high)`; left out, all of it.
     - `quantiles`: whether the histograms are kept that quantiles come from.
     - `watch`: who is told of progress, and where the state of a long pass is kept.
 
@@ -85,7 +91,7 @@ def measure_error(
     **Fails** with `RatfitError` as `setting` and `check_protocol` do. See also: `DEFINITIONS`, `measure_speed`.
     """
     check_protocol(sampling, samples, seed, dtype)
-    place = setting(fit, parameters, reference)
+    place = setting(fit, parameters, reference, within)
     sampling = resolve(sampling, place.variable.name, place.low, place.high, dtype)
     if samples is None:
         samples = count(place.low, place.high, dtype)
@@ -104,7 +110,7 @@ def measure_error(
         worst=_worst(places),
         nonfinite=samples - totals.counts["finite"],
         samples=samples,
-        sampling=sampling,
+        sampling=named(sampling, within),
         seed=seed,
         dtype=dtype,
         parameters=place.parameters,
@@ -116,6 +122,11 @@ def measure_error(
         curve=error_curve(place, dtype),
         note="; ".join([*_notes(totals, infinite, place, dtype, better, exhaustive), *map(str, kept)]),
     )
+
+
+def named(sampling: str, within: tuple[float, float] | None) -> str:
+    """The protocol as a record has it: with the part of the domain, where it is not measured on all of it."""
+    return sampling if within is None else f"{sampling} on [{within[0]:.17g}, {within[1]:.17g}]"
 
 
 def _places(totals: Totals, place: Setting, sampling: str, seed: int, dtype: str) -> dict[str, dict[str, Any]]:
@@ -153,6 +164,8 @@ def _notes(
         yield f"pole of the fit at {place.variable} = {where}: no mean or maximum has a meaning"
     if not totals.counts["finite"]:
         yield f"no sample is finite in {dtype}: its constants or values leave that type's range"
+    if totals.worst["relative"][0] > VANISHING and totals.worst["absolute"][0] < totals.extremes["peak"]:
+        yield "relative errors are huge where the exact function all but vanishes: read those over the peak"
     counted = ", ".join(f"{totals.counts[n]} {n.replace('_', ' of the ')}" for n in LEFT_OUT if totals.counts[n])
     if counted:
         yield f"left out: {counted}"

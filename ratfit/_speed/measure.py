@@ -60,13 +60,14 @@ def measure_speed(
     dtype: str = "float32",
     parameters: Mapping[str, Value] | None = None,
     reference: str | None = None,
+    within: tuple[float, float] | None = None,
     repeats: int | None = None,
 ) -> SpeedMeasurement:
     """Time the exact function, the fit and the copy floor against one another.
 
     **Arguments:**
 
-    - `fit`, `parameters`, `reference`: as for `measure_error`.
+    - `fit`, `parameters`, `reference`, `within`: as for `measure_error`.
     - `backend`: a name of `BACKENDS`; `available()` says which of them this machine has.
     - `samples`, `seed`: the size and seed of the uniform sample that all three run on; `dtype`: their arithmetic.
     - `repeats`: the number of rounds; left out, as many as fit into 1.5 s.
@@ -78,7 +79,7 @@ def measure_speed(
     check_protocol("uniform", samples, seed, dtype)
     if repeats is not None and repeats < 1:
         raise RatfitError(f"repeats = {repeats}: a whole number from 1 upwards is needed, or None")
-    place, chosen = setting(fit, parameters, reference), backend_named(backend)
+    place, chosen = setting(fit, parameters, reference, within), backend_named(backend)
     asked = SpeedMeasurement(backend, BACKENDS[backend], samples, seed, dtype, place.parameters, reference)
     if chosen.prepare is None:
         return _modelled(asked, place)

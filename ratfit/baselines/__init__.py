@@ -24,7 +24,10 @@ PEERS: Mapping[str, Callable[[Fit, Original], Peer]] = {
 
 
 def peers(
-    fit: Fit, parameters: Mapping[str, Any] | None = None, reference: str | None = None
+    fit: Fit,
+    parameters: Mapping[str, Any] | None = None,
+    reference: str | None = None,
+    within: tuple[float, float] | None = None,
 ) -> list[Peer | Unavailable]:
     """Every peer of a fit at these values of the parameters, or the reason why there is none.
 
@@ -33,15 +36,16 @@ def peers(
     - `fit`: a `Fit` without free coefficients.
     - `parameters`: a number for each parameter by name. One that is random leaves no one function to make a peer of.
     - `reference`: the name of the problem's reference that the peers are made of, in place of the target.
+    - `within`: the part of the domain that they are made for, `(low, high)`; left out, all of it.
 
     **Returns:** one record for each of `PEERS`. `measure_error` and `measure_speed` take a `Peer` as they take a fit,
     with the same parameters and reference.
 
     **Fails** with `RatfitError` as `setting` does, for what the fit could not be measured with either.
     """
-    if any(end.is_infinite for end in fit.problem.domain):
+    if within is None and any(end.is_infinite for end in fit.problem.domain):
         return [Unavailable(name, "the domain is infinite, and a peer is made on finite ends") for name in PEERS]
-    place = setting(fit, parameters, reference)
+    place = setting(fit, parameters, reference, within)
     try:
         original = original_of(place)
     except RatfitError as reason:

@@ -46,6 +46,7 @@ measure_options = together(
         metavar="NAME",
         help=BACKEND_HELP,
     ),
+    click.option("--within", nargs=2, metavar="LOW HIGH", help="Measure on that part of the domain."),
     click.option("--peers", is_flag=True, help="Beside the fit: table, AAA, polynomial of equal cost, Pade."),
 )
 
@@ -71,6 +72,7 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
     ratfit bench eq19 --set m=0.2 --peers               beside a table, AAA, a polynomial and Pade
     ratfit bench eq19 --set m=random --sampling hemisphere
     ratfit bench eq12 --exhaustive --backend none       every float32 of the domain, no timing
+    ratfit bench tanh --within 0 10                     on a finite part of an infinite domain
     ratfit bench eq21 --samples 1e9 --out rows.jsonl    interrupt it; --resume goes on
     ratfit bench eq21 --out new.jsonl --against rows.jsonl
     ratfit bench "exp(x)" --on 0 1 --form 2/2 --value 0 --derivative 0 --derivative "0;order=2" --value 1 --derivative 1
@@ -133,23 +135,31 @@ def _run(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str,
     sampling = "exhaustive" if options["exhaustive"] else options["sampling"]
     check_protocol(sampling, samples, options["seed"], options["dtype"])
     how = Measuring(samples, options["seed"], sampling, options["dtype"])
-    found = _jobs(fit, shown, given, options["peers"])
+    found = _jobs(fit, shown, given, options)
     about = _about(fit, shown, _command(options))
     return Run(found, how, _backends(options["backends"]), about, options["out"], options["resume"])
 
 
-def _jobs(fit: Fit, shown: Card | None, given: dict[str, str], with_peers: bool) -> list[Job]:
+def _jobs(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str, Any]) -> list[Job]:
     from ratfit._bench import jobs, peer_jobs
 
     values = {n: v if v == "random" else float(exact(v, f"--set {n}")) for n, v in given.items()}
     settings: Sequence[Any] = [values] if values else list(shown.settings) if shown else []
-    found = jobs(fit, settings)
-    if not with_peers:
+    ends = tuple(_finite(end) for end in options["within"] or ())
+    found = jobs(fit, settings, (ends[0], ends[1]) if ends else None)
+    if not options["peers"]:
         return found
     peers, missing = peer_jobs(found)
     for name, reason in missing:
         print(f"ratfit: no {name}: {reason}", file=sys.stderr)
     return [*found, *peers]
+
+
+def _finite(text: str) -> float:
+    value = exact(text, "--within")
+    if not (value.is_number and value.is_finite):
+        raise RatfitError(f"--within {text}: two numbers are needed, as in --within 0 9")
+    return float(value)
 
 
 def _backends(asked: tuple[str, ...]) -> tuple[str, ...]:

@@ -23,7 +23,6 @@ from ratfit._kernel import precision
 from ratfit._sampling import bounds, check_protocol, count, drawing, resolve
 from ratfit._setting import Setting, Value, setting
 
-
 VANISHING = 1000.0
 """A relative error that says more of how small the exact function is than of the fit."""
 

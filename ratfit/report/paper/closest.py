@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from decimal import Decimal
+
+from ratfit.report.measured import LEADING
 
 SAME_DRAW: Mapping[tuple[str, str], str] = {
     **{("Eq. 12", protocol): "uniform" for protocol in ("angle", "cosine", "in-plane", "hemisphere")},
@@ -39,22 +41,21 @@ class Finding:
 
 @dataclass(frozen=True)
 class Match:
-    """One number that may be what was printed; `alike` are further definitions that give it at the same finding."""
+    """One number that may be what was printed."""
 
     finding: Finding
     definition: str
     value: float
     distance: float
-    alike: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Closest:
-    """The best match for a printed figure, of how many, and how many of them round to the figure as it is printed."""
+    """The best match for a printed figure, of how many, and those that round to the figure, the best one first."""
 
     match: Match
     tried: int
-    rounding: int
+    rounding: tuple[Match, ...]
 
 
 @dataclass(frozen=True)
@@ -94,8 +95,8 @@ def is_fraction(definition: str) -> bool:
 def closest(findings: Sequence[Finding], printed: float) -> Closest | None:
     """The number nearest to a printed figure, of all definitions of all findings; None where there is none.
 
-    Of equally near ones the first is taken. Of definitions that give the same to ALIKE, the one that is named divides
-    by something, because a percentage is of something; the others are said beside it.
+    Those that round to the figure are equally near, for the print tells no more: of them a mean error goes before
+    others, in the order of LEADING. Otherwise the lesser distance decides, and then the order of the findings.
     """
     tried = [
         Match(finding, definition, value, distance(value, printed))
@@ -103,22 +104,15 @@ def closest(findings: Sequence[Finding], printed: float) -> Closest | None:
         for definition, value in finding.epsilon.items()
         if is_fraction(definition) and value is not None
     ]
-    near = [match for match in tried if match.distance < math.inf]
+    near = sorted((match for match in tried if match.distance < math.inf), key=lambda match: match.distance)
     if not near:
         return None
-    rounding = sum(rounds_to(match.value, printed) for match in near)
-    return Closest(_named(min(near, key=lambda match: match.distance), near), len(tried), rounding)
+    rounding = sorted((match for match in near if rounds_to(match.value, printed)), key=_rank)
+    return Closest([*rounding, *near][0], len(tried), tuple(rounding))
 
 
-ALIKE = 1e-4
-"""Relative difference of numbers that are told as one: between the definitions of a target whose peak is 1, say."""
-
-
-def _named(best: Match, near: Sequence[Match]) -> Match:
-    """The best match under the name that a percentage would have."""
-    same = [m for m in near if m.finding is best.finding and abs(m.value - best.value) <= ALIKE * best.value]
-    first, *others = sorted(same, key=lambda match: match.definition.startswith("absolute_"))
-    return replace(first, alike=tuple(match.definition for match in others))
+def _rank(match: Match) -> int:
+    return LEADING.index(match.definition) if match.definition in LEADING else len(LEADING)
 
 
 def common(findings: Sequence[Finding], printed: Mapping[str, float], protocols: Sequence[str]) -> list[Common]:

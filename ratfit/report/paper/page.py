@@ -20,11 +20,11 @@ from ratfit.report.document import (
     Section,
     Table,
     Verbatim,
-)  # fmt: skip
+)
 from ratfit.report.measured import gamma_range, number
 from ratfit.report.paper.closest import Finding, closest
+from ratfit.report.paper.closest_part import searched
 from ratfit.report.paper.measurements import PLAIN, Derived
-from ratfit.report.paper.parts import searched
 from ratfit.report.problem_rows import ProblemRows
 from ratfit.report.problem_section import problem_section
 from ratfit.report.records import EPS, GAMMA

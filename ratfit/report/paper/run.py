@@ -12,39 +12,35 @@ from typing import Any
 from ratfit._derive import derive
 from ratfit._error.devices import use_all_cores
 from ratfit._parse import RatfitError
-from ratfit._record import Row, contract, machine, write_text
+from ratfit._record import Row, write_text
 from ratfit._sampling import check_protocol
 from ratfit._speed import available
 from ratfit.gallery import card
-from ratfit.report.document import Document, Paragraph, Section
-from ratfit.report.paper.closest import Finding, closest, common
+from ratfit.report.document import Block, Document, Paragraph, Section
+from ratfit.report.paper.closest import closest
+from ratfit.report.paper.closest_part import closest_part, searched
+from ratfit.report.paper.common_part import common_part, common_sentence
+from ratfit.report.paper.errors_part import equation, footnote_part
 from ratfit.report.paper.footnote import EPSILON, PLACE
-from ratfit.report.paper.gammas import gammas_part
-from ratfit.report.paper.materials import materials_part
+from ratfit.report.paper.gamma_part import gammas_part
+from ratfit.report.paper.materials_part import materials_part
 from ratfit.report.paper.measurements import (
     DTYPE,
     EQUATIONS,
-    OF_COSINES,
     PLAIN,
     Derived,
     Task,
     error_tasks,
     footnote_tasks,
     speed_task,
-)  # fmt: skip
+)
 from ratfit.report.paper.page import command, document_of, overview
-from ratfit.report.paper.parts import (
-    closest_table,
-    common_part,
-    equation,
-    footnote_part,
-    searched,
-    smith_part,
-)  # fmt: skip
-from ratfit.report.paper.rows import begin, finding, rows
+from ratfit.report.paper.results import Results, to_json_object
+from ratfit.report.paper.rows import begin, rows
+from ratfit.report.paper.smith_part import smith_part
 from ratfit.report.paper.text import section_text
 from ratfit.report.progress import progress
-from ratfit.report.text import equals_published, published_object
+from ratfit.report.text import published_object
 from ratfit.report.write import write_document
 
 
@@ -60,38 +56,6 @@ class Asked:
     backends: tuple[str, ...] | None = None  # None: all that this machine has
 
 
-@dataclass(frozen=True)
-class Results:
-    """What a run has come to: the fits, and every measurement with its row."""
-
-    derived: tuple[Derived, ...]
-    measured: tuple[tuple[Task, Row], ...] = ()
-
-    @property
-    def findings(self) -> list[Finding]:
-        """The errors, without those that were measured again beside a time."""
-        return [finding(task, row) for task, row in self.measured if not task.backends]
-
-    @property
-    def timed(self) -> list[tuple[Task, Row]]:
-        """The rows of the backends."""
-        return [(task, row) for task, row in self.measured if task.backends]
-
-    @property
-    def epsilons(self) -> dict[str, float]:
-        """The eps that the paper prints, by place."""
-        return {d.card.place: d.card.epsilon for d in self.derived if d.card.epsilon is not None} | {PLACE: EPSILON}
-
-    @property
-    def gammas(self) -> dict[str, float]:
-        """The gamma that the paper prints, by place."""
-        return {d.card.place: d.card.gamma for d in self.derived if d.card.gamma is not None}
-
-    def of(self, place: str) -> list[Finding]:
-        """The findings of one place."""
-        return [each for each in self.findings if each.place == place]
-
-
 def run_paper(asked: Asked) -> int:
     """Derives, measures, prints, and writes page and record into the folder `out`.
 
@@ -101,15 +65,15 @@ def run_paper(asked: Asked) -> int:
     gone on from.
     """
     check_protocol(PLAIN, asked.samples, asked.seed, DTYPE)
-    use_all_cores()
     parts: dict[str, Section] = {}
     with _folder(asked.out):
         results = _said(asked, parts)
-        record = json.dumps(to_json_object(results, asked), indent=2, ensure_ascii=False, allow_nan=False)
+        found = to_json_object(results, asked.samples, asked.seed)
+        record = json.dumps(found, indent=2, ensure_ascii=False, allow_nan=False)
         write_text(asked.out / "paper.json", record + "\n")
         written = write_document(_document(results, parts, asked), asked.out, "paper")
     print(record if asked.format == "json" else f"\nwrote {written[0]}, paper.md, paper.json and rows.jsonl")
-    return 0 if all(equals_published(each.fit, each.card) for each in results.derived) else 1
+    return 0 if results.is_as_printed else 1
 
 
 @contextmanager
@@ -137,6 +101,7 @@ def _said(asked: Asked, parts: dict[str, Section]) -> Results:
 
     if asked.format == "text":
         print(lead(asked.samples, asked.seed), flush=True)
+    use_all_cores()
     results = Results(_derived())
     errors, times = _tasks(results.derived, asked)
     path = asked.out / "rows.jsonl"
@@ -146,8 +111,8 @@ def _said(asked: Asked, parts: dict[str, Section]) -> Results:
         own = [task for task in errors if task.place == place]
         results = replace(results, measured=(*results.measured, *rows(own, held, path, about)))
         say(place, _place_part(results, place))
-    say("closest", _closest_part(results))
-    say("common", _common_part(results))
+    say("closest", closest_part(results.findings, results.epsilons))
+    say("common", common_part(*results.ways, results.epsilons))
     results = replace(results, measured=(*results.measured, *rows(times, held, path, about)))
     say("gamma", gammas_part(results.timed, results.gammas))
     say("smith", smith_part(results.of(card("eq19").place)))
@@ -196,23 +161,8 @@ def _place_part(results: Results, place: str) -> Section:
         if each.card.place == place:
             return equation(each, results.of(place))
     sine = closest(searched(results.of("Eq. 12")), results.epsilons["Eq. 12"])
-    return footnote_part(results.of(place), EPSILON, sine.match.definition if sine else None)
-
-
-def _closest_part(results: Results) -> Section:
-    return Section("What comes closest", (Paragraph(CHANCE), closest_table(results.findings, results.epsilons)))
-
-
-CHANCE = """\
-For each printed eps the nearest of all definitions, protocols and settings that were measured. Among so many \
-something comes near by chance: a match explains a figure only where few others round to it as well."""
-
-
-def _common_part(results: Results) -> Section:
-    printed = results.epsilons
-    equations = {place: figure for place, figure in printed.items() if place != PLACE}
-    every, without = (common(results.findings, figures, OF_COSINES) for figures in (printed, equations))
-    return common_part(every, without, printed)
+    names = dict.fromkeys(match.definition for match in sine.rounding) if sine else ()
+    return footnote_part(results.of(place), EPSILON, tuple(names))
 
 
 def _document(results: Results, parts: Mapping[str, Section], asked: Asked) -> Document:
@@ -222,47 +172,10 @@ def _document(results: Results, parts: Mapping[str, Section], asked: Asked) -> D
     timed = [row | {"place": task.place} for task, row in results.timed]
     printed = {place: (figure, results.gammas.get(place)) for place, figure in results.epsilons.items()}
     titles = {place: parts[place].title for place in printed}
-    top = (
+    top: tuple[Block, ...] = (
         Paragraph(" ".join(lead(asked.samples, asked.seed).split())),
         overview(results.findings, timed, titles, printed),
+        *(Paragraph(common_sentence(ways, results.epsilons)) for ways in results.ways if ways),
         command(asked.samples, asked.seed),
     )
     return document_of(parts, results.derived, by_place, top)
-
-
-def to_json_object(results: Results, asked: Asked) -> dict[str, Any]:
-    """The record of a run: machine, every fit with what was printed and what comes closest to it, every row."""
-    return {
-        "machine": machine(),
-        "samples": asked.samples,
-        "seed": asked.seed,
-        "equations": [_equation_object(each, results) for each in results.derived],
-        "footnote": {"place": PLACE, "paper": {"epsilon": EPSILON}, "closest": _closest_object(results, PLACE)},
-        "rows": [
-            {"place": task.place, "protocol": task.protocol, "setting": task.setting, **contract(row)}
-            for task, row in results.measured
-        ],
-    }
-
-
-def _equation_object(each: Derived, results: Results) -> dict[str, Any]:
-    shown = each.card
-    return {
-        "place": shown.place,
-        "fit": each.fit.to_json_object(),
-        "published": shown.printed,
-        "equal": equals_published(each.fit, shown),
-        "paper": {"epsilon": shown.epsilon, "gamma": shown.gamma, "operations": shown.operations},
-        "closest": _closest_object(results, shown.place),
-    }
-
-
-def _closest_object(results: Results, place: str) -> dict[str, Any] | None:
-    found = closest(searched(results.of(place)), results.epsilons[place]) if place in results.epsilons else None
-    if found is None:
-        return None
-    of = found.match.finding
-    return {
-        "definition": found.match.definition, "protocol": of.protocol, "setting": of.setting, "against": of.against,
-        "epsilon": found.match.value, "factor": found.match.distance, "tried": found.tried, "rounding": found.rounding,
-    }  # fmt: skip

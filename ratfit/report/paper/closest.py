@@ -96,7 +96,7 @@ def closest(findings: Sequence[Finding], printed: float) -> Closest | None:
     """The number nearest to a printed figure, of all definitions of all findings; None where there is none.
 
     Those that round to the figure are equally near, for the print tells no more: of them a mean error goes before
-    others, in the order of LEADING. Otherwise the lesser distance decides, and then the order of the findings.
+    others, in the order of LEADING, and one over the peak before the rest. Otherwise the lesser distance decides.
     """
     tried = [
         Match(finding, definition, value, distance(value, printed))
@@ -112,7 +112,9 @@ def closest(findings: Sequence[Finding], printed: float) -> Closest | None:
 
 
 def _rank(match: Match) -> int:
-    return LEADING.index(match.definition) if match.definition in LEADING else len(LEADING)
+    if match.definition in LEADING:
+        return LEADING.index(match.definition)
+    return len(LEADING) + (not match.definition.startswith("peak_"))
 
 
 def common(findings: Sequence[Finding], printed: Mapping[str, float], protocols: Sequence[str]) -> list[Common]:

@@ -59,7 +59,8 @@ def torrance_sparrow(t: sp.Expr, u: sp.Expr, v: sp.Expr, v_: sp.Expr) -> sp.Expr
 def in_plane() -> Stated:
     """V and V' in a plane with N, at angles s and a to it, both uniform on (-pi/2, pi/2)."""
     right = sp.pi / 2
-    s, a = sp.Symbol("s", real=True), parameter("a", -right * _SHORT, right * _SHORT)
+    # Short by unequal shares: the middle of the range would be the normal itself, where Eq. 18 is inf/inf.
+    s, a = sp.Symbol("s", real=True), parameter("a", -right * _SHORT, right * _SHORT**2)
     formula = torrance_sparrow(sp.cos((s + a) / 2), sp.cos((s - a) / 2), sp.cos(s), sp.cos(a))
     return _stated("eq16-in-plane", formula, s, (-right, right), (a,), lambda exact: _of_angle(exact, s, a))
 
@@ -68,8 +69,9 @@ def on_hemisphere() -> Stated:
     """V and V' uniform over the hemisphere: heights v, w uniform on (0, 1), phi between their azimuths on (0, pi)."""
     v = sp.Symbol("v", real=True)
     w, phi = parameter("w", 0, 1), parameter("phi", 0, sp.pi * _SHORT)
-    sines = sp.sqrt((1 - v**2) * (1 - w**2))
-    length = sp.sqrt(2 * (1 + v * w + sines * sp.cos(phi)))  # |V + V'|
+    sine, other = sp.sqrt(1 - v**2), sp.sqrt(1 - w**2)
+    # |V + V'|, a sum without cancellation, as in `_sampling/directions.py`.
+    length = sp.sqrt((v + w) ** 2 + (sine - other) ** 2 + 4 * sine * other * sp.cos(phi / 2) ** 2)
     formula = torrance_sparrow((v + w) / length, length / 2, v, w)
     return _stated("eq16-hemisphere", formula, v, (sp.S.Zero, _SHORT), (w, phi), lambda exact: _of_height(exact, v, w))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,33 +17,45 @@ from ratfit.report.progress import Meter, progress
 About = Callable[[Task], Mapping[str, Any]]
 
 
-def begin(path: Path, tasks: Sequence[Task], resume: bool) -> list[Row]:
-    """The rows to go on from; a file of something else is refused, and one that is not gone on from is begun anew."""
+@dataclass(frozen=True)
+class Planned:
+    """A measurement, and the rows of it that are there already: one for each backend, None where it must be made."""
+
+    task: Task
+    known: tuple[Row | None, ...]
+
+
+def plan(path: Path, tasks: Sequence[Task], resume: bool) -> list[Planned]:
+    """What is to be measured, and what a file of rows has of it.
+
+    Without `resume` the file is begun anew. **Fails** with `RatfitError` for a file of something else, which stays as
+    it is, and for rows that cannot be gone on from.
+    """
     held = read_rows(path)
-    if resume:
-        check_resumable(held, [key for task in tasks for key in _keys(task)], path)
-        return held
-    path.unlink(missing_ok=True)
-    return []
+    if not resume:
+        path.unlink(missing_ok=True)
+        return [Planned(task, (None,) * len(task.backends or ("",))) for task in tasks]
+    keys = [_keys(task) for task in tasks]
+    check_resumable(held, [key for each in keys for key in each], path)
+    known = [tuple(next((row for row in held if same_measurement(row, **key)), None) for key in each) for each in keys]
+    return [Planned(task, rows) for task, rows in zip(tasks, known, strict=True)]
 
 
-def rows(tasks: Sequence[Task], held: Sequence[Row], path: Path, about: About) -> Iterator[tuple[Task, Row]]:
-    """Each measurement with its row, or with its rows, one for each backend, in order; what is held is not measured."""
-    for number, task in enumerate(tasks, 1):
-        known = [next((row for row in held if same_measurement(row, **key)), None) for key in _keys(task, held)]
-        missing = [backend for backend, row in zip(task.backends or ("",), known, strict=True) if row is None]
-        fresh = _measured(task, missing, path, about, f"{task.place}, {number}/{len(tasks)}: {_words(task)}")
-        yield from ((task, row or next(fresh)) for row in known)
-    progress("")
-
-
-def _keys(task: Task, held: Sequence[Row] | None = None) -> list[dict[str, Any]]:
-    """What each row of a task is the result of; not worked out where there is nothing to compare it with."""
+def _keys(task: Task) -> list[dict[str, Any]]:
+    """What each row of a task is the result of."""
     backends = task.backends or ("",)
-    if held is not None and not held:
-        return [{"name": ""} for _ in backends]
     first = asked(task.job, task.how, backends[0])
     return [first | {"backend": backend} for backend in backends]
+
+
+def rows(plans: Sequence[Planned], path: Path, about: About) -> Iterator[tuple[Task, Row]]:
+    """Each measurement with its row, or with its rows, one for each backend, in order, each written as it is known."""
+    for number, planned in enumerate(plans, 1):
+        task = planned.task
+        missing = [backend for backend, row in zip(task.backends or ("",), planned.known, strict=True) if row is None]
+        fresh = _measured(task, missing, path, about, f"{task.place}, {number}/{len(plans)}: {_words(task)}")
+        yield from ((task, row or next(fresh)) for row in planned.known)
+    progress("")
 
 
 def _measured(task: Task, backends: Sequence[str], path: Path, about: About, title: str) -> Iterator[Row]:

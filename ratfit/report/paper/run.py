@@ -36,7 +36,7 @@ from ratfit.report.paper.measurements import (
 )
 from ratfit.report.paper.page import command, document_of, overview
 from ratfit.report.paper.results import Results, to_json_object
-from ratfit.report.paper.rows import begin, rows
+from ratfit.report.paper.rows import plan, rows
 from ratfit.report.paper.smith_part import smith_part
 from ratfit.report.paper.text import section_text
 from ratfit.report.progress import progress
@@ -105,15 +105,15 @@ def _said(asked: Asked, parts: dict[str, Section]) -> Results:
     results = Results(_derived())
     errors, times = _tasks(results.derived, asked)
     path = asked.out / "rows.jsonl"
-    held = begin(path, [*errors, *times], asked.resume)
+    plans = plan(path, [*errors, *times], asked.resume)
     about = _about(results.derived, asked)
     for place in (*(each.card.place for each in results.derived), PLACE):
-        own = [task for task in errors if task.place == place]
-        results = replace(results, measured=(*results.measured, *rows(own, held, path, about)))
+        own = [each for each in plans[: len(errors)] if each.task.place == place]
+        results = replace(results, measured=(*results.measured, *rows(own, path, about)))
         say(place, _place_part(results, place))
     say("closest", closest_part(results.findings, results.epsilons))
     say("common", common_part(*results.ways, results.epsilons))
-    results = replace(results, measured=(*results.measured, *rows(times, held, path, about)))
+    results = replace(results, measured=(*results.measured, *rows(plans[len(errors) :], path, about)))
     say("gamma", gammas_part(results.timed, results.gammas))
     say("smith", smith_part(results.of(card("eq19").place)))
     say("materials", materials_part())

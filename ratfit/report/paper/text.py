@@ -12,7 +12,8 @@ from ratfit.report.text import WIDTH, aligned
 
 def section_text(section: Section) -> str:
     """Title and blocks as lines of a terminal, without what is folded on the page or what only a page can show."""
-    return "\n".join([section.title, *(line for block in section.blocks for line in ("", *_lines(block)))])
+    blocks = ["\n".join(_lines(block)) for block in section.blocks]
+    return "\n\n".join([section.title, *filter(None, blocks)])
 
 
 def _lines(block: Block) -> Iterator[str]:

@@ -325,7 +325,9 @@ def test_a_derivation_that_does_not_give_the_printed_formula_is_exit_status_1(
     assert json.loads((tmp_path / "paper" / "paper.json").read_text())["equations"][0]["equal"] is False
 
 
-@pytest.mark.parametrize(("changes", "fragment"), [({"samples": 0}, "samples"), ({"seed": -1}, "seed")])
+@pytest.mark.parametrize(
+    ("changes", "fragment"), [({"samples": 0}, "samples"), ({"seed": -1}, "seed"), ({"samples": 10**12}, "sobol has")]
+)
 def test_what_cannot_be_measured_is_said_before_anything_is_made(tmp_path, changes, fragment):
     with pytest.raises(RatfitError, match=fragment):
         run_paper(asked(tmp_path, **changes))

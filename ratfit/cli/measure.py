@@ -264,7 +264,7 @@ def paper(samples: int, seed: int, out: str, resume: bool, format_: str) -> int:
     figure, and the one measure that serves them all best; gamma in every regime of this machine.
 
     \b
-    ratfit paper                        some minutes; writes paper.html, paper.md, paper.json to ./ratfit-paper
+    ratfit paper                        about four minutes; writes paper.html, paper.md, paper.json to ./ratfit-paper
     ratfit paper --samples 100000       a little sooner, less precise
     ratfit paper --resume               after an interruption
     """

@@ -25,6 +25,7 @@ from ratfit.report.paper.footnote import EPSILON, PLACE
 from ratfit.report.paper.gamma_part import gammas_part
 from ratfit.report.paper.materials_part import materials_part
 from ratfit.report.paper.measurements import (
+    CHECK,
     DTYPE,
     EQUATIONS,
     PLAIN,
@@ -64,7 +65,8 @@ def run_paper(asked: Asked) -> int:
     samples and a seed that nothing can be measured with, for a folder that cannot be made, and for rows that cannot be
     gone on from.
     """
-    check_protocol(PLAIN, asked.samples, asked.seed, DTYPE)
+    for protocol in (PLAIN, CHECK):  # now, not after minutes
+        check_protocol(protocol, asked.samples, asked.seed, DTYPE)
     parts: dict[str, Section] = {}
     with _folder(asked.out):
         results = _said(asked, parts)

@@ -68,7 +68,7 @@ def in_plane() -> Stated:
 def on_hemisphere() -> Stated:
     """V and V' uniform over the hemisphere: heights v, w uniform on (0, 1), phi between their azimuths on (0, pi)."""
     v = sp.Symbol("v", real=True)
-    w, phi = parameter("w", 0, 1), parameter("phi", 0, sp.pi * _SHORT)
+    w, phi = parameter("w", 0, _SHORT), parameter("phi", 0, sp.pi * _SHORT)
     sine, other = sp.sqrt(1 - v**2), sp.sqrt(1 - w**2)
     # |V + V'|, a sum without cancellation, as in `_sampling/directions.py`.
     length = sp.sqrt((v + w) ** 2 + (sine - other) ** 2 + 4 * sine * other * sp.cos(phi / 2) ** 2)

@@ -428,16 +428,6 @@ def test_report_makes_pages_of_rows(run, tmp_path):
     assert {"report.html", "report.md"} <= {page.name for page in pages.iterdir()}
 
 
-def test_paper_writes_its_page_and_record(run, tmp_path):
-    status, out, _ = run("paper", "--samples", "2000", "--out", str(tmp_path / "paper"))
-    assert status == 0 and out.count("symbolically equal") == 4
-    record = json.loads((tmp_path / "paper" / "paper.json").read_text())
-    assert [e["place"] for e in record["equations"]] == ["Eq. 12", "Eq. 15", "Eq. 19", "Eq. 21"]
-    assert all(e["equal"] for e in record["equations"])
-    page = (tmp_path / "paper" / "paper.md").read_text()
-    assert all(f"## Eq. {n}" in page for n in (12, 15, 19, 21))
-
-
 @pytest.mark.parametrize("command", ["derive", "bench", "report", "paper", "gallery", "init", "check"])
 def test_help_has_examples(run, command):
     status, out, _ = run(command, "--help")

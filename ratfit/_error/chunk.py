@@ -23,7 +23,7 @@ CHUNK = 2**18
 LANES = 2**12
 """Samples in a row, whose arrays stay in the innermost caches; fixed for the same reason."""
 
-ROWS, GROUP = CHUNK // LANES, 8
+ROWS, GROUP = CHUNK // LANES, 16
 """Rows of a chunk; and those of them that a lane adds up plainly before it adds their sum with its rounding error."""
 
 # What is counted, added up, and looked for the greatest and the least of.
@@ -73,23 +73,38 @@ def chunk_totals(what: Pass, start: Any, samples: Any, seed: Any, ends: Any, con
         counters = start + number * LANES + lane
         points = drawing(what.sampling, what.dtype)(seed, counters, ends)
         fit = kernel(what.fit, what.varying).function(*points, *constants[0])
-        return fit, *_exact(what, [point.astype(jnp.float64) for point in points], constants[1])
+        exact, low = _exact(what, [point.astype(jnp.float64) for point in points], constants[1])
+        # Beyond the last sample the exact function is nan and the fit is not: `_errors` then counts nothing there.
+        inside = counters < samples
+        return jnp.where(inside, fit, 0), jnp.where(inside, exact, jnp.nan), low
 
     def add(number: Any, carried: dict[str, Any]) -> dict[str, Any]:
-        inside = start + number.astype(jnp.uint64) * LANES + lane < samples
         low = lows if lows is None else lows[number]
-        return _added(carried, _errors(fits[number], exacts[number], low, inside, what.dtype), number)
+        return _added(carried, _errors(fits[number], exacts[number], low, what.dtype))
 
-    def add_group(group: Any, carried: tuple[dict[str, Any], dict[str, Any]]) -> tuple[dict[str, Any], dict[str, Any]]:
-        rest, sums = carried
-        rest = jax.lax.fori_loop(group * GROUP, (group + 1) * GROUP, add, rest | {"sums": _zeros()})
-        return rest, {name: _two_sum(sums[name], value) for name, value in rest.pop("sums").items()}
+    def add_group(group: Any, carried: tuple[dict[str, Any], dict[str, Any], dict[str, Any]]) -> tuple[Any, ...]:
+        rest, sums, worst = carried
+        rest = jax.lax.fori_loop(group * GROUP, (group + 1) * GROUP, add, rest | {"sums": _zeros(), "worst": _none()})
+        sums = {name: _two_sum(sums[name], value) for name, value in rest.pop("sums").items()}
+        return rest, sums, {name: _worse(worst[name], value, group) for name, value in rest.pop("worst").items()}
 
     # Two loops, because the end of a loop is what XLA respects: in one, each sum computes the functions for itself.
     fits, exacts, lows = jax.lax.map(evaluated, jnp.arange(ROWS, dtype=jnp.uint64))
     sums = {name: (value, value) for name, value in _zeros().items()}
-    rest, sums = jax.lax.fori_loop(0, ROWS // GROUP, add_group, (_empty(what.quantiles), sums))
-    return _folded(rest, sums, start)
+    worst = {name: (value, jnp.zeros(LANES, jnp.int64)) for name, value in _none().items()}
+    rest, sums, worst = jax.lax.fori_loop(0, ROWS // GROUP, add_group, (_empty(what.quantiles), sums, worst))
+
+    def errors(rows: Any, lane: Any) -> dict[str, Any]:
+        low = lows if lows is None else lows[rows, lane]
+        return _errors(fits[rows, lane], exacts[rows, lane], low, what.dtype)
+
+    found = _folded(rest, sums)
+    beyond = jnp.clip(start.astype(jnp.int64) + CHUNK - samples.astype(jnp.int64), 0, CHUNK)
+    found["nan_exact"] = found["nan_exact"] - beyond
+    for name, (value, group) in worst.items():
+        found[f"worst_{name}"], place = _first_worst(name, value, group, errors)
+        found[f"counter_{name}"] = start + place.astype(jnp.uint64)
+    return found
 
 
 def _exact(what: Pass, points: list[Any], constants: Any) -> tuple[Any, Any]:
@@ -129,23 +144,58 @@ def _zeros() -> dict[str, Any]:
     return {name: jnp.zeros(LANES) for name in SUMS}
 
 
+def _none() -> dict[str, Any]:
+    """-1, not 0: a sample that is left out is never the worst one, not even where every error is 0."""
+    import jax.numpy as jnp
+
+    return {name: jnp.full(LANES, -1.0) for name in WORST}
+
+
+def _worse(worst: tuple[Any, Any], found: Any, group: Any) -> tuple[Any, Any]:
+    """The greatest error of each lane so far, and the group of rows that it was first met in."""
+    import jax.numpy as jnp
+
+    value, place = worst
+    return jnp.maximum(value, found), jnp.where(found > value, group, place)
+
+
+def _first_worst(name: str, value: Any, group: Any, errors: Callable[..., dict[str, Any]]) -> tuple[Any, Any]:
+    """The greatest error of all lanes, and its place in the chunk: the rows of its group are looked at again.
+
+    Of equal errors one is named, always the same: that of the first lane in the first group.
+    """
+    import jax.numpy as jnp
+
+    most = jnp.max(value)
+    first = jnp.min(jnp.where(value == most, group, ROWS))
+    lane = jnp.argmax((value == most) & (group == first))
+    rows = first * GROUP + jnp.arange(GROUP)
+    row = errors(rows, lane)
+    return most, rows[jnp.argmax(_counting(name, row))] * LANES + lane
+
+
+def _counting(name: str, row: dict[str, Any]) -> Any:
+    """The errors of a kind where they count, and -1 elsewhere."""
+    import jax.numpy as jnp
+
+    return jnp.where(row["nonzero" if name == "relative" else "finite"], row[name], -1.0)
+
+
 def _empty(quantiles: bool) -> dict[str, Any]:
     import jax.numpy as jnp
 
     nothing: dict[str, Any] = {"counts": jnp.zeros(LANES, jnp.int64)}
     nothing |= {"peak": jnp.zeros(LANES), "highest": jnp.full(LANES, -jnp.inf), "lowest": jnp.full(LANES, jnp.inf)}
-    # -1, not 0: a sample that is left out is never the worst one, not even where every error is 0.
-    nothing |= {f"worst_{name}": (jnp.full(LANES, -1.0), jnp.zeros(LANES, jnp.int64)) for name in WORST}
     bins = {f"{name}_bins": jnp.zeros(BINS, jnp.int64) for name in ("absolute", "relative")}
     return nothing | (bins if quantiles else {})
 
 
-def _errors(fit: Any, exact: Any, low: Any, inside: Any, dtype: str) -> dict[str, Any]:
+def _errors(fit: Any, exact: Any, low: Any, dtype: str) -> dict[str, Any]:
     """The errors of a row, sample by sample; 0 where one is not defined."""
     import jax.numpy as jnp
 
     fitted = fit.astype(jnp.float64)
-    known = inside & jnp.isfinite(exact)
+    known = jnp.isfinite(exact)
     finite = known & jnp.isfinite(fitted)
     nonzero = finite & (exact != 0)
     size = jnp.where(known, jnp.abs(exact), 0)
@@ -155,7 +205,7 @@ def _errors(fit: Any, exact: Any, low: Any, inside: Any, dtype: str) -> dict[str
     return {
         "finite": finite, "nonzero": nonzero, "known": known, "exact": exact,
         # Each count has a byte of its own: a lane sees 64 samples of a chunk.
-        "counts": sum((inside & kind).astype(jnp.int64) << (8 * place) for place, kind in enumerate(kinds)),
+        "counts": sum(kind.astype(jnp.int64) << (8 * place) for place, kind in enumerate(kinds)),
         "size": size, "error": error, "absolute": jnp.abs(error), "square": error * error,
         "relative_signed": relative, "relative": jnp.abs(relative), "relative_square": relative * relative,
         "ulp": _in_ulp(jnp.abs(error), size, dtype),
@@ -188,20 +238,17 @@ def _in_ulp(error: Any, size: Any, dtype: str) -> Any:
     return error
 
 
-def _added(carried: dict[str, Any], row: dict[str, Any], number: Any) -> dict[str, Any]:
+def _added(carried: dict[str, Any], row: dict[str, Any]) -> dict[str, Any]:
     import jax.numpy as jnp
 
     new = {
         "counts": carried["counts"] + row["counts"],
         "sums": {name: value + row[name] for name, value in carried["sums"].items()},
+        "worst": {name: jnp.maximum(value, _counting(name, row)) for name, value in carried["worst"].items()},
         "peak": jnp.maximum(carried["peak"], row["size"]),
         "highest": jnp.maximum(carried["highest"], jnp.where(row["known"], row["exact"], -jnp.inf)),
         "lowest": jnp.minimum(carried["lowest"], jnp.where(row["known"], row["exact"], jnp.inf)),
     }
-    for name in WORST:
-        value, place = carried[f"worst_{name}"]
-        found = jnp.where(row["nonzero" if name == "relative" else "finite"], row[name], -1.0)
-        new[f"worst_{name}"] = jnp.maximum(value, found), jnp.where(found > value, number, place)
     for name in ("absolute", "relative"):
         if f"{name}_bins" in carried:
             counted = row["nonzero" if name == "relative" else "finite"].astype(jnp.int64)
@@ -226,7 +273,7 @@ def _bin(error: Any) -> Any:
     return jnp.clip(bits.astype(jnp.int32) - (1023 + LEAST_EXPONENT) * BINS_AN_OCTAVE, 0, BINS - 1)
 
 
-def _folded(rest: dict[str, Any], sums: dict[str, tuple[Any, Any]], start: Any) -> dict[str, Any]:
+def _folded(rest: dict[str, Any], sums: dict[str, tuple[Any, Any]]) -> dict[str, Any]:
     """The lanes of a chunk as one."""
     import jax.numpy as jnp
 
@@ -237,10 +284,4 @@ def _folded(rest: dict[str, Any], sums: dict[str, tuple[Any, Any]], start: Any) 
         high, low = _two_sum((high[:, :half], low[:, :half] + low[:, half:]), high[:, half:])
     found["sums"] = jnp.concatenate([high, low], axis=1)
     found["extremes"] = jnp.stack([jnp.max(rest["peak"]), jnp.max(rest["highest"]), jnp.min(rest["lowest"])])
-    for name in WORST:
-        value, number = rest[f"worst_{name}"]
-        counters = start + number.astype(jnp.uint64) * LANES + jnp.arange(LANES, dtype=jnp.uint64)
-        most = jnp.max(value)
-        first = jnp.min(jnp.where(value == most, counters, jnp.uint64(2**64 - 1)))
-        found[f"worst_{name}"], found[f"counter_{name}"] = most, first
     return found | {name: part for name, part in rest.items() if name.endswith("_bins")}

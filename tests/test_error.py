@@ -16,7 +16,7 @@ import pytest
 import sympy as sp
 
 from ratfit._error import DEFINITIONS, measure_error
-from ratfit._error.chunk import CHUNK
+from ratfit._error.chunk import CHUNK, GROUP
 from ratfit._error.definitions import QUANTILES, quantile
 from ratfit._error.poles import poles_of
 from ratfit._parse import RatfitError
@@ -226,7 +226,7 @@ def test_an_ulp_is_the_spacing_of_the_dtype_at_the_exact_value(dtype):
         found = measure((float(size),), (away,), samples=10, dtype=dtype)
         # XLA takes what is below float64's normal numbers for 0; the spacing there is that at 0.
         error = abs(float(size) - away)
-        assert found.epsilon["ulp_max"] == found.epsilon["ulp_mean"]
+        assert found.epsilon["ulp_mean"] == pytest.approx(found.epsilon["ulp_max"], rel=GROUP * 2.0**-53, abs=0)
         assert found.epsilon["ulp_max"] == pytest.approx(error / float(np.spacing(abs(size))), rel=1e-15), size
 
 
@@ -348,7 +348,8 @@ def test_where_the_exact_function_is_zero_there_is_no_relative_error():
 def test_a_sum_or_square_beyond_float64_is_none_and_the_rest_stands(size):
     found = measure((0,), (size,), samples=1000, dtype="float64").epsilon
     assert found["absolute_rms"] is None
-    assert (found["absolute_mean"], found["absolute_max"], found["absolute_bias"]) == (size, size, size)
+    assert found["absolute_max"] == size
+    assert (found["absolute_mean"], found["absolute_bias"]) == pytest.approx((size, size), rel=GROUP * 2.0**-53, abs=0)
     # The bins end at 2**-192, where 0 is near enough, and at 2**64, beyond which nothing is known.
     assert found["absolute_q50"] == (None if size > 1 else 0)
 

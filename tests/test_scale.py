@@ -18,7 +18,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratfit._error import stream as streaming
-from ratfit._error.chunk import BINS, CHUNK, COUNTS, EXTREMES, GROUP, LANES, ROWS, SUMS, WORST
+from ratfit._error.chunk import BINS, CHUNK, COUNTS, EXTREMES, GROUP, SUMS, WORST
 from ratfit._error.stream import Watch, pass_of, stream
 from ratfit._error.totals import BINNED, NOTHING, Totals, of_chunks
 from ratfit._sampling import draw
@@ -163,14 +163,14 @@ def test_the_sums_of_a_chunk_are_those_of_fsum(chunkwise):
 
 
 def test_nothing_is_lost_beside_great_errors_or_where_they_cancel(chunkwise):
-    """Two chunks in the order of their numbers: the first rows are 2**60 in one, -2**60 in the other, the rest 1."""
-    row = R(LANES, 2**23)  # the numbers of a row, between 1 and 2
-    great, whole = sp.Integer(2) ** 60, 1 + ROWS * row
-    pieces = ((great, x < 1 + GROUP * row), (1, x < whole), (-great, x < whole + GROUP * row), (1, True))
-    place = place_of(0, sp.Piecewise(*pieces), (sp.Integer(1), whole + ROWS * row - R(1, 2**23)))
-    what, ones = pass_of(place, "exhaustive", "float32", True), (ROWS - GROUP) * LANES
+    """Two chunks in the order of their numbers: the first group is 2**60 in one, -2**60 in the other, the rest 1."""
+    step = R(1, 2**23)  # from one number between 1 and 2 to the next
+    great, whole = sp.Integer(2) ** 60, 1 + CHUNK * step
+    pieces = ((great, x < 1 + GROUP * step), (1, x < whole), (-great, x < whole + GROUP * step), (1, True))
+    place = place_of(0, sp.Piecewise(*pieces), (sp.Integer(1), whole + (CHUNK - 1) * step))
+    what, ones = pass_of(place, "exhaustive", "float32", True), CHUNK - GROUP
     first, both = (stream(what, place, chunks * CHUNK, 0, Watch()) for chunks in (1, 2))
-    assert first.sums["error"] == first.sums["absolute"] == (GROUP * LANES * 2**60 + ones) << 1074
+    assert first.sums["error"] == first.sums["absolute"] == (GROUP * 2**60 + ones) << 1074
     assert both.sums["error"] == (2 * ones) << 1074
     assert both.mean("error", both.counts["finite"]) == ones / CHUNK
 

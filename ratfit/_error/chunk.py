@@ -23,8 +23,8 @@ CHUNK = 2**18
 LANES = 2**12
 """Samples in a row, whose arrays stay in the innermost caches; fixed for the same reason."""
 
-ROWS, GROUP = CHUNK // LANES, 16
-"""Rows of a chunk; and those of them that a lane adds up plainly before it adds their sum with its rounding error."""
+GROUP = 32
+"""Samples that are added up plainly, one after the other, before sums are added with their rounding errors."""
 
 # What is counted, added up, and looked for the greatest and the least of.
 LEFT_OUT = ("nan_fit", "inf_fit", "nan_exact", "inf_exact")
@@ -67,44 +67,30 @@ def chunk_totals(what: Pass, start: Any, samples: Any, seed: Any, ends: Any, con
     import jax
     import jax.numpy as jnp
 
-    lane = jnp.arange(LANES, dtype=jnp.uint64)
-
-    def evaluated(number: Any) -> tuple[Any, Any, Any]:
-        counters = start + number * LANES + lane
+    def evaluated(row: Any) -> tuple[Any, Any, Any]:
+        counters = start + row * LANES + jnp.arange(LANES, dtype=jnp.uint64)
         points = drawing(what.sampling, what.dtype)(seed, counters, ends)
         fit = kernel(what.fit, what.varying).function(*points, *constants[0])
         exact, low = _exact(what, [point.astype(jnp.float64) for point in points], constants[1])
-        # Beyond the last sample the exact function is nan and the fit is not: `_errors` then counts nothing there.
+        # Beyond the last sample the exact function is nan and the fit is not: no sum sees such a sample.
         inside = counters < samples
         return jnp.where(inside, fit, 0), jnp.where(inside, exact, jnp.nan), low
 
-    def add(number: Any, carried: dict[str, Any]) -> dict[str, Any]:
-        low = lows if lows is None else lows[number]
-        return _added(carried, _errors(fits[number], exacts[number], low, what.dtype))
-
-    def add_group(group: Any, carried: tuple[dict[str, Any], dict[str, Any], dict[str, Any]]) -> tuple[Any, ...]:
-        rest, sums, worst = carried
-        rest = jax.lax.fori_loop(group * GROUP, (group + 1) * GROUP, add, rest | {"sums": _zeros(), "worst": _none()})
-        sums = {name: _two_sum(sums[name], value) for name, value in rest.pop("sums").items()}
-        return rest, sums, {name: _worse(worst[name], value, group) for name, value in rest.pop("worst").items()}
-
-    # Two loops, because the end of a loop is what XLA respects: in one, each sum computes the functions for itself.
-    fits, exacts, lows = jax.lax.map(evaluated, jnp.arange(ROWS, dtype=jnp.uint64))
-    sums = {name: (value, value) for name, value in _zeros().items()}
-    worst = {name: (value, jnp.zeros(LANES, jnp.int64)) for name, value in _none().items()}
-    rest, sums, worst = jax.lax.fori_loop(0, ROWS // GROUP, add_group, (_empty(what.quantiles), sums, worst))
-
-    def errors(rows: Any, lane: Any) -> dict[str, Any]:
-        low = lows if lows is None else lows[rows, lane]
-        return _errors(fits[rows, lane], exacts[rows, lane], low, what.dtype)
-
-    found = _folded(rest, sums)
+    # The end of a loop is what XLA respects: without one, every result would compute the functions for itself.
+    values = jax.lax.map(evaluated, jnp.arange(CHUNK // LANES, dtype=jnp.uint64))
+    fit, exact, low = (None if each is None else each.reshape(-1, GROUP) for each in values)
+    errors = _errors(fit, exact, low, what.dtype)
+    groups = _reduced(errors)
+    found = _folded(groups)
+    for name in WORST:
+        found[f"worst_{name}"] = jnp.max(groups[f"worst_{name}"])
+        group = jnp.argmax(groups[f"worst_{name}"])
+        again = _errors(fit[group], exact[group], None if low is None else low[group], what.dtype)
+        place = group * GROUP + jnp.argmax(_counting(name, again))
+        found[f"counter_{name}"] = start + place.astype(jnp.uint64)
     beyond = jnp.clip(start.astype(jnp.int64) + CHUNK - samples.astype(jnp.int64), 0, CHUNK)
     found["nan_exact"] = found["nan_exact"] - beyond
-    for name, (value, group) in worst.items():
-        found[f"worst_{name}"], place = _first_worst(name, value, group, errors)
-        found[f"counter_{name}"] = start + place.astype(jnp.uint64)
-    return found
+    return found | (_histograms(errors) if what.quantiles else {})
 
 
 def _exact(what: Pass, points: list[Any], constants: Any) -> tuple[Any, Any]:
@@ -136,58 +122,6 @@ def _in_double_double(what: Pass) -> Callable[[Any], Any]:
         return np.stack(run(*values)).view(np.uint32).reshape(2, LANES, 2)
 
     return halves
-
-
-def _zeros() -> dict[str, Any]:
-    import jax.numpy as jnp
-
-    return {name: jnp.zeros(LANES) for name in SUMS}
-
-
-def _none() -> dict[str, Any]:
-    """-1, not 0: a sample that is left out is never the worst one, not even where every error is 0."""
-    import jax.numpy as jnp
-
-    return {name: jnp.full(LANES, -1.0) for name in WORST}
-
-
-def _worse(worst: tuple[Any, Any], found: Any, group: Any) -> tuple[Any, Any]:
-    """The greatest error of each lane so far, and the group of rows that it was first met in."""
-    import jax.numpy as jnp
-
-    value, place = worst
-    return jnp.maximum(value, found), jnp.where(found > value, group, place)
-
-
-def _first_worst(name: str, value: Any, group: Any, errors: Callable[..., dict[str, Any]]) -> tuple[Any, Any]:
-    """The greatest error of all lanes, and its place in the chunk: the rows of its group are looked at again.
-
-    Of equal errors one is named, always the same: that of the first lane in the first group.
-    """
-    import jax.numpy as jnp
-
-    most = jnp.max(value)
-    first = jnp.min(jnp.where(value == most, group, ROWS))
-    lane = jnp.argmax((value == most) & (group == first))
-    rows = first * GROUP + jnp.arange(GROUP)
-    row = errors(rows, lane)
-    return most, rows[jnp.argmax(_counting(name, row))] * LANES + lane
-
-
-def _counting(name: str, row: dict[str, Any]) -> Any:
-    """The errors of a kind where they count, and -1 elsewhere."""
-    import jax.numpy as jnp
-
-    return jnp.where(row["nonzero" if name == "relative" else "finite"], row[name], -1.0)
-
-
-def _empty(quantiles: bool) -> dict[str, Any]:
-    import jax.numpy as jnp
-
-    nothing: dict[str, Any] = {"counts": jnp.zeros(LANES, jnp.int64)}
-    nothing |= {"peak": jnp.zeros(LANES), "highest": jnp.full(LANES, -jnp.inf), "lowest": jnp.full(LANES, jnp.inf)}
-    bins = {f"{name}_bins": jnp.zeros(BINS, jnp.int64) for name in ("absolute", "relative")}
-    return nothing | (bins if quantiles else {})
 
 
 def _errors(fit: Any, exact: Any, low: Any, dtype: str) -> dict[str, Any]:
@@ -238,22 +172,45 @@ def _in_ulp(error: Any, size: Any, dtype: str) -> Any:
     return error
 
 
-def _added(carried: dict[str, Any], row: dict[str, Any]) -> dict[str, Any]:
+def _reduced(errors: dict[str, Any]) -> dict[str, Any]:
+    """The samples of each group as one, in one sweep, whose running results are a handful of numbers."""
+    import jax
     import jax.numpy as jnp
 
-    new = {
-        "counts": carried["counts"] + row["counts"],
-        "sums": {name: value + row[name] for name, value in carried["sums"].items()},
-        "worst": {name: jnp.maximum(value, _counting(name, row)) for name, value in carried["worst"].items()},
-        "peak": jnp.maximum(carried["peak"], row["size"]),
-        "highest": jnp.maximum(carried["highest"], jnp.where(row["known"], row["exact"], -jnp.inf)),
-        "lowest": jnp.minimum(carried["lowest"], jnp.where(row["known"], row["exact"], jnp.inf)),
-    }
-    for name in ("absolute", "relative"):
-        if f"{name}_bins" in carried:
-            counted = row["nonzero" if name == "relative" else "finite"].astype(jnp.int64)
-            new[f"{name}_bins"] = carried[f"{name}_bins"].at[_bin(row[name])].add(counted)
-    return new
+    terms = {f"sum_{name}": (errors[name], 0.0) for name in SUMS}
+    terms |= {"counts": (errors["counts"], 0), "peak": (errors["size"], 0.0)}
+    terms |= {"highest": (jnp.where(errors["known"], errors["exact"], -jnp.inf), -jnp.inf)}
+    terms |= {"lowest": (jnp.where(errors["known"], errors["exact"], jnp.inf), jnp.inf)}
+    terms |= {f"worst_{name}": (_counting(name, errors), -1.0) for name in WORST}
+    names = list(terms)
+
+    def together(one: tuple[Any, ...], other: tuple[Any, ...]) -> tuple[Any, ...]:
+        left, right = dict(zip(names, one, strict=True)), dict(zip(names, other, strict=True))
+        new = {name: left[name] + right[name] for name in names if name.startswith("sum_") or name == "counts"}
+        new["lowest"] = jnp.minimum(left["lowest"], right["lowest"])
+        new |= {name: jnp.maximum(left[name], right[name]) for name in names if name not in new}
+        return tuple(new[name] for name in names)
+
+    arrays = tuple(array for array, _ in terms.values())
+    begins = tuple(jnp.asarray(begin, array.dtype) for array, begin in terms.values())
+    return dict(zip(names, jax.lax.reduce(arrays, begins, together, (1,)), strict=True))
+
+
+def _counting(name: str, errors: dict[str, Any]) -> Any:
+    """The errors of a kind; -1, not 0, where one is left out: it is never the worst, not even where all are 0."""
+    import jax.numpy as jnp
+
+    return jnp.where(errors["nonzero" if name == "relative" else "finite"], errors[name], -1.0)
+
+
+def _histograms(errors: dict[str, Any]) -> dict[str, Any]:
+    import jax.numpy as jnp
+
+    def histogram(name: str) -> Any:
+        counted = errors["nonzero" if name == "relative" else "finite"].astype(jnp.int64)
+        return jnp.zeros(BINS, jnp.int64).at[_bin(errors[name])].add(counted)
+
+    return {f"{name}_bins": histogram(name) for name in ("absolute", "relative")}
 
 
 def _two_sum(total: tuple[Any, Any], value: Any) -> tuple[Any, Any]:
@@ -273,15 +230,16 @@ def _bin(error: Any) -> Any:
     return jnp.clip(bits.astype(jnp.int32) - (1023 + LEAST_EXPONENT) * BINS_AN_OCTAVE, 0, BINS - 1)
 
 
-def _folded(rest: dict[str, Any], sums: dict[str, tuple[Any, Any]]) -> dict[str, Any]:
-    """The lanes of a chunk as one."""
+def _folded(groups: dict[str, Any]) -> dict[str, Any]:
+    """The groups of a chunk as one."""
     import jax.numpy as jnp
 
-    found = {name: jnp.sum((rest["counts"] >> (8 * place)) & 255) for place, name in enumerate(COUNTS)}
-    high, low = (jnp.stack([sums[name][part] for name in SUMS]) for part in (0, 1))
+    found = {name: jnp.sum((groups["counts"] >> (8 * place)) & 255) for place, name in enumerate(COUNTS)}
+    high = jnp.stack([groups[f"sum_{name}"] for name in SUMS])
+    low = jnp.zeros_like(high)
     while high.shape[1] > 1:
         half = high.shape[1] // 2
         high, low = _two_sum((high[:, :half], low[:, :half] + low[:, half:]), high[:, half:])
     found["sums"] = jnp.concatenate([high, low], axis=1)
-    found["extremes"] = jnp.stack([jnp.max(rest["peak"]), jnp.max(rest["highest"]), jnp.min(rest["lowest"])])
-    return found | {name: part for name, part in rest.items() if name.endswith("_bins")}
+    found["extremes"] = jnp.stack([jnp.max(groups["peak"]), jnp.max(groups["highest"]), jnp.min(groups["lowest"])])
+    return found

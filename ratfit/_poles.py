@@ -98,14 +98,21 @@ def _simple_roots(poly: sp.Poly) -> list[mpmath.mpc]:
         ]
 
 
+def _real(value: mpmath.mpf | mpmath.mpc) -> mpmath.mpf:
+    """A real value; nan, which has no sign, for one that is not."""
+    if not isinstance(value, mpmath.mpc):
+        return value
+    return value.real if value.imag == 0 else mpmath.nan
+
+
 def _scanned_roots(base: sp.Expr, x: sp.Symbol, ends: Sequence[mpmath.mpf]) -> list[mpmath.mpc]:
     """Changes of sign of something that is no polynomial; an infinite end is cut at a distance of 1000."""
     if not base.has(x):
         return []
     low, high = max(ends[0], mpmath.mpf(-1000)), min(ends[1], mpmath.mpf(1000))
     function = function_of(base, x, {})
-    points = [low + (high - low) * i / (SCAN - 1) for i in range(SCAN)]
-    values = [function(p) for p in points]
+    points = [low + (high - low) * i / (SCAN - 1) for i in range(SCAN - 1)] + [high]  # no rounding beyond the end
+    values = [_real(function(p)) for p in points]
     found = [p for p, v in zip(points, values, strict=True) if v == 0]
     for i in range(SCAN - 1):
         if mpmath.sign(values[i]) * mpmath.sign(values[i + 1]) < 0:

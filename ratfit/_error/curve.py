@@ -53,8 +53,9 @@ def _over(place: Setting, points: Any, dtype: str, middle: Any, symbol: Any, val
     worst = []
     for value in values:
         fit, exact = values_at(place, points, dtype, {**middle, symbol: value})
-        worst.append(np.ma.max(abs(_difference(fit, exact))))
-    return {"values": values.tolist(), "absolute_max": _plain(np.ma.array(worst))}
+        most = np.ma.max(abs(_difference(fit, exact)))
+        worst.append(None if most is np.ma.masked else float(most))
+    return {"values": values.tolist(), "absolute_max": worst}
 
 
 def values_at(place: Setting, points: Any, dtype: str, drawn: Any) -> tuple[Any, Any]:

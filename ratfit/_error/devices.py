@@ -19,5 +19,4 @@ def use_all_cores() -> None:
     in_flags = "xla_force_host_platform_device_count" in os.environ.get("XLA_FLAGS", "")
     if not in_flags and jax.config.jax_num_cpu_devices < 0:  # type: ignore[attr-defined]  # -1: nobody has said
         with contextlib.suppress(RuntimeError):  # JAX has computed already, on the devices that it then made
-            with contextlib.suppress(RuntimeError):  # JAX has computed already, on the devices that it then made
             jax.config.update("jax_num_cpu_devices", cores())

@@ -1,6 +1,6 @@
 """Killed at any moment, and gone on: the rows are those of a run that nobody disturbed.
 
-A few times in the everyday suite; `RATFIT_KILLS=50 pytest tests/test_kill.py` says how often, as CI does.
+`RATFIT_KILLS=50 pytest -m thorough tests/test_kill.py` says how often, as CI does.
 """
 
 import json
@@ -43,6 +43,7 @@ def finish(rows):
     ]
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL on Windows")
 def test_a_run_killed_at_random_moments_ends_with_the_same_rows(tmp_path):
     undisturbed = finish(tmp_path / "undisturbed.jsonl")

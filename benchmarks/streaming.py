@@ -2,7 +2,7 @@
 
 `python benchmarks/streaming.py [ROUNDS [MOST]]`: so many rounds in turn, and at most so many samples (1e9).
 The peer draws the same samples, evaluates the fit in float32 and the reference in float64, keeps both, and does nothing
-else, in the quickest of three forms: one array, chunks, or rows that stay in the cache.
+else, in the quickest of three forms: one array, chunks, or rows that stay in the cache, the last two on all devices.
 """
 
 import os
@@ -17,9 +17,11 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.sharding import AxisType, PartitionSpec
 
 import ratfit as rf
 from ratfit._error.chunk import LANES, Pass
+from ratfit._error.devices import use_all_cores
 from ratfit._error.stream import Watch, pass_of, stream
 from ratfit._kernel import kernel, precision
 from ratfit._sampling import bounds, count, drawing
@@ -35,7 +37,9 @@ BAR, LONG_BAR, MEMORY_BAR = 2.0, 1.1, 300
 
 def main() -> None:
     rounds, most = int(sys.argv[1]) if sys.argv[1:] else 21, int(float(sys.argv[2])) if sys.argv[2:] else 10**9
-    print(f"1e6 float32 samples on one device, medians of {rounds} rounds in turn")
+    use_all_cores()  # as bench does
+    devices = len(jax.devices())
+    print(f"1e6 float32 samples on {devices} devices, medians of {rounds} rounds in turn")
     print("equation  peer ms (its form)    eps ms  ratio  with quantiles   bar")
     for name, (parameters, reference) in SETTINGS.items():
         print_row(name, setting(rf.derive(name), parameters, reference), rounds)
@@ -98,7 +102,10 @@ def peer(what: Pass, place: Setting, size: int) -> Callable[[], Any]:
     """Drawing, fit and reference, so many samples at a time; both results are kept."""
     fit, exact = (kernel(program, what.varying) for program in (what.fit, what.exact))
     constants = fit.constants(place.values, what.dtype), exact.constants(place.values, "float64")
-    ends, parts = bounds(place, what.dtype), -(-SAMPLES // size)
+    devices = 1 if size == SAMPLES else len(jax.devices())
+    ends, parts = bounds(place, what.dtype), devices * -(-SAMPLES // (size * devices))
+    mesh = jax.make_mesh((devices,), ("devices",), (AxisType.Auto,), devices=jax.devices()[:devices])
+    each, whole = PartitionSpec("devices"), PartitionSpec()
 
     def evaluated(start: Any, seed: Any, ends: Any, constants: Any) -> tuple[Any, Any]:
         points = drawing(what.sampling, what.dtype)(seed, start + jnp.arange(size, dtype=jnp.uint64), ends)
@@ -111,7 +118,10 @@ def peer(what: Pass, place: Setting, size: int) -> Callable[[], Any]:
             jax.lax.map(lambda start: evaluated(start, *given), starts) if parts > 1 else evaluated(starts[0], *given)
         )
 
-    compiled = jax.jit(all_of_them)
+    shared = jax.shard_map(
+        all_of_them, mesh=mesh, in_specs=(each, whole, whole, whole), out_specs=each, check_vma=False
+    )
+    compiled = jax.jit(shared if devices > 1 else all_of_them)
     starts = np.arange(parts, dtype=np.uint64) * np.uint64(size)
 
     def run() -> None:

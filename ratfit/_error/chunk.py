@@ -23,12 +23,13 @@ CHUNK = 2**18
 LANES = 2**12
 """Samples in a row, whose arrays stay in the innermost caches; fixed for the same reason."""
 
-GROUP = 32
+GROUP = 64
 """Samples that are added up plainly, one after the other, before sums are added with their rounding errors."""
 
 # What is counted, added up, and looked for the greatest and the least of.
+COUNTED = ("finite", "nonzero", "known")  # known: the exact value is finite, whatever the fit is
 LEFT_OUT = ("nan_fit", "inf_fit", "nan_exact", "inf_exact")
-COUNTS = ("finite", "nonzero", "known", *LEFT_OUT)  # known: the exact value is finite, whatever the fit is
+COUNTS = (*COUNTED, *LEFT_OUT)
 SUMS = ("error", "absolute", "square", "relative_signed", "relative", "relative_square", "size", "ulp")
 EXTREMES = ("peak", "highest", "lowest")  # of |exact| and of exact
 WORST = ("absolute", "relative", "ulp")
@@ -89,8 +90,23 @@ def chunk_totals(what: Pass, start: Any, samples: Any, seed: Any, ends: Any, con
         place = group * GROUP + jnp.argmax(_counting(name, again))
         found[f"counter_{name}"] = start + place.astype(jnp.uint64)
     beyond = jnp.clip(start.astype(jnp.int64) + CHUNK - samples.astype(jnp.int64), 0, CHUNK)
-    found["nan_exact"] = found["nan_exact"] - beyond
+    left_out = jax.lax.cond(found["finite"] + beyond == CHUNK, _nothing_left_out, _left_out, fit, exact)
+    found |= dict(zip(LEFT_OUT, left_out, strict=True))
+    found["nan_exact"] = jnp.maximum(found["nan_exact"] - beyond, 0)
     return found | (_histograms(errors) if what.quantiles else {})
+
+
+def _left_out(fit: Any, exact: Any) -> Any:
+    """How many samples of a chunk are nan or infinite: looked at only where there are such."""
+    import jax.numpy as jnp
+
+    return jnp.stack([jnp.sum(test(values)) for values in (fit, exact) for test in (jnp.isnan, jnp.isinf)])
+
+
+def _nothing_left_out(fit: Any, exact: Any) -> Any:
+    import jax.numpy as jnp
+
+    return jnp.zeros(len(LEFT_OUT), jnp.int64)
 
 
 def _exact(what: Pass, points: list[Any], constants: Any) -> tuple[Any, Any]:
@@ -135,10 +151,10 @@ def _errors(fit: Any, exact: Any, low: Any, dtype: str) -> dict[str, Any]:
     size = jnp.where(known, jnp.abs(exact), 0)
     error = jnp.where(finite, fitted - exact if low is None else (fitted - exact) - low, 0)
     relative = jnp.where(nonzero, error / jnp.where(nonzero, exact, 1), 0)
-    kinds = (finite, nonzero, known, jnp.isnan(fitted), jnp.isinf(fitted), jnp.isnan(exact), jnp.isinf(exact))
+    kinds = (finite, nonzero, known)
     return {
         "finite": finite, "nonzero": nonzero, "known": known, "exact": exact,
-        # Each count has a byte of its own: a lane sees 64 samples of a chunk.
+        # Each count has a byte of its own, which a group does not fill.
         "counts": sum(kind.astype(jnp.int64) << (8 * place) for place, kind in enumerate(kinds)),
         "size": size, "error": error, "absolute": jnp.abs(error), "square": error * error,
         "relative_signed": relative, "relative": jnp.abs(relative), "relative_square": relative * relative,
@@ -162,13 +178,12 @@ def _in_ulp(error: Any, size: Any, dtype: str) -> Any:
     import jax.numpy as jnp
 
     fraction, least = _format(dtype)
-    bits = jax.lax.bitcast_convert_type(size, jnp.uint64)
-    exponent = jnp.maximum((bits >> 52).astype(jnp.int64) - 1023, least)
-    # A power of two can be beyond 2**1023, at numbers below 2**-971, which float64 alone has: then in two steps.
-    power = fraction - exponent
-    steps = (power // 2, power - power // 2) if fraction - least > 1023 else (power,)
+    biased = jnp.maximum(jax.lax.bitcast_convert_type(size, jnp.int64) >> 52, least + 1023)
+    power = (fraction + 2 * 1023) - biased  # of two, with a float64's bias
+    # It can be beyond 2**1023, at numbers below 2**-971, which float64 alone has: then in two steps.
+    steps = (power // 2 + 512, power - power // 2 + 511) if fraction - least > 1023 else (power,)
     for step in steps:
-        error = error * jax.lax.bitcast_convert_type(((step + 1023).astype(jnp.uint64)) << 52, jnp.float64)
+        error = error * jax.lax.bitcast_convert_type(step << 52, jnp.float64)
     return error
 
 
@@ -234,7 +249,7 @@ def _folded(groups: dict[str, Any]) -> dict[str, Any]:
     """The groups of a chunk as one."""
     import jax.numpy as jnp
 
-    found = {name: jnp.sum((groups["counts"] >> (8 * place)) & 255) for place, name in enumerate(COUNTS)}
+    found = {name: jnp.sum((groups["counts"] >> (8 * place)) & 255) for place, name in enumerate(COUNTED)}
     high = jnp.stack([groups[f"sum_{name}"] for name in SUMS])
     low = jnp.zeros_like(high)
     while high.shape[1] > 1:

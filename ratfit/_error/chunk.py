@@ -79,7 +79,8 @@ def chunk_totals(what: Pass, start: Any, samples: Any, seed: Any, ends: Any, con
 
     # The end of a loop is what XLA respects: without one, every result would compute the functions for itself.
     values = jax.lax.map(evaluated, jnp.arange(CHUNK // LANES, dtype=jnp.uint64))
-    fit, exact, low = (None if each is None else each.reshape(-1, GROUP) for each in values)
+    fit, exact = (each.reshape(-1, GROUP) for each in values[:2])
+    low = None if values[2] is None else values[2].reshape(-1, GROUP)
     errors = _errors(fit, exact, low, what.dtype)
     groups = _reduced(errors)
     found = _folded(groups)

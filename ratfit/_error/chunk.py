@@ -1,8 +1,8 @@
 """One chunk of samples on a device: drawn, evaluated, and added up, all in the cache.
 
-The samples of a chunk pass through in rows. Each lane of a row keeps running totals of its own, sums with the rounding
-error of every addition beside them, so that no order of evaluation is left to the compiler: a chunk's totals are the
-same numbers whichever device makes them.
+Groups of samples are added up one after the other, in one sweep for all results; the groups by a fixed tree, with the
+rounding error of every addition beside the sums. No order of evaluation is left to the compiler: a chunk's totals are
+the same numbers whichever device makes them.
 """
 
 from __future__ import annotations

@@ -110,6 +110,8 @@ BAD = [
     (["bench", "eq12", "--exhaustive", "--sampling", "angle"], "--sampling"),
     (["bench", "eq12", "--exhaustive", "--dtype", "float64"], "float32"),
     (["bench", "eq19", "--exhaustive", "--set", "m=random"], "exhaustive"),
+    (["bench", "eq12", "--sampling", "exhaustive"], "--exhaustive"),
+    (["bench", "eq12", "--backend", "none", "--backend", "numpy"], "errors alone"),
     (["bench", "eq12", "--sampling", "hemisphere"], "[0, 1]"),
     (["bench", "eq19", "--set", "m=rondom"], "rondom"),
     (["bench", "eq12", "--against", "/no/such/rows.jsonl"], "no such file"),
@@ -388,8 +390,11 @@ def test_bench_resumes_from_its_file(run, tmp_path):
     again = json.loads(run(*arguments, "--resume")[1])["rows"]
     assert again == first
     assert len(path.read_text().splitlines()) == 3
-    status, _, told = run(*arguments, "--resume", "--seed", "1")
-    assert status == 2 and "seed 0" in told and "another --out" in told
+    for backend in ("cost-model", "none"):
+        other = [*arguments[:-1], backend]
+        assert run(*other, "--resume")[0] == 0
+        status, _, told = run(*other, "--resume", "--seed", "1")
+        assert status == 2 and "seed 0" in told and "another --out" in told
 
 
 def test_bench_compares_with_older_rows(run, tmp_path):
@@ -403,6 +408,24 @@ def test_bench_compares_with_older_rows(run, tmp_path):
     path.write_text(json.dumps(row) + "\n")
     status, out, _ = run(*arguments, "--against", str(path))
     assert status == 1 and "peak_mean" in out and "+100 %" in out
+
+
+def test_bench_says_where_a_target_is_infinite_and_keeps_its_remarks_with_the_errors(run):
+    words = ["1/(2*x - 1)", "--on", "0", "1", "--form", "0/1", "--value", "0", "--value", "1"]
+    status, out, _ = run("bench", *words, "--samples", "1000", "--backend", "none")
+    assert status == 0 and "infinite at x = 0.5" in out
+    words = ["Abs(x - 1/3)", "--on", "0", "1", "--form", "2/0", "--value", "0", "--value", "1", "--derivative", "0"]
+    status, out, _ = run("bench", *words, "--samples", "100000", "--backend", "none")
+    assert status == 0 and "all but vanishes" in out
+
+
+def test_a_finished_row_leaves_no_state_and_nothing_to_compare_is_no_success(run, tmp_path):
+    rows, others = tmp_path / "rows.jsonl", tmp_path / "others.jsonl"
+    for name, path in (("eq12", rows), ("arctan", others)):
+        assert run("bench", name, "--samples", "1000", "--backend", "none", "--out", str(path))[0] == 0
+    assert not list(tmp_path.glob("*.part"))
+    status, out, _ = run("bench", "eq12", "--samples", "1000", "--backend", "none", "--against", str(others))
+    assert status == 1 and "nothing could be compared" in out
 
 
 def test_bench_draws_parameters_and_shows_peers(run):

@@ -46,7 +46,7 @@ def kept_values(fit: Any, place: Setting, dtype: str) -> tuple[KeptValue, ...]:
     run = kernel(place.program, place.varying).at(place.values, dtype)
     found = []
     for at, expected in _stated(fit, place):
-        if sp.Rational(float(kind(at))) == at:
+        if sp.Rational(float(kind(at))) == at and place.low <= at <= place.high:
             with precision(dtype), np.errstate(over="ignore"):
                 found.append(
                     KeptValue(float(at), float(run(np.array([float(at)], dtype))[0]), float(kind(rounded(expected))))

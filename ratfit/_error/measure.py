@@ -14,7 +14,7 @@ from ratfit._error.bits import KeptValue, kept_values
 from ratfit._error.chunk import LEFT_OUT, WORST
 from ratfit._error.curve import error_curve
 from ratfit._error.definitions import TABLE
-from ratfit._error.poles import poles_of
+from ratfit._error.poles import poles_of, poles_of_exact
 from ratfit._error.reference import FLOAT64, Reference, reference_for
 from ratfit._error.stream import Watch, pass_of, stream
 from ratfit._error.subnormal import flushed_samples
@@ -161,6 +161,10 @@ def _notes(
     if infinite:
         where = ", ".join(f"{at:.6g}" for at in infinite[:3])
         yield f"pole of the fit at {place.variable} = {where}: no mean or maximum has a meaning"
+    if shared := poles_of_exact(place):
+        where = ", ".join(f"{at:.6g}" for at in shared[:3])
+        near = "its peak, mean and range say how near a sample came"
+        yield f"the exact function is infinite at {place.variable} = {where}: {near}"
     if not totals.counts["finite"]:
         yield f"no sample is finite in {dtype}: its constants or values leave that type's range"
     if totals.worst["relative"][0] > VANISHING and totals.worst["absolute"][0] < totals.extremes["peak"]:

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Mapping
 
 import sympy as sp
 
-from ratfit._kernel import Program
 from ratfit._lower import lower
 from ratfit._poles import poles
 from ratfit._setting import Setting
@@ -33,15 +32,27 @@ def poles_of(place: Setting) -> tuple[float, ...]:
 
     Of parameters that are drawn at random, some values of the range are looked at; what lies between them is not seen.
     """
+    return _places(place, place.formula, place.exact)
+
+
+def poles_of_exact(place: Setting) -> tuple[float, ...]:
+    """Where on the closed domain the exact function is infinite, in increasing order, as far as polynomials tell."""
+    return _places(place, place.exact, sp.S.One, polynomials=True)
+
+
+def _places(place: Setting, formula: sp.Expr, other: sp.Expr, polynomials: bool = False) -> tuple[float, ...]:
+    """Where one expression is infinite and the other is not; on wish only zeros of polynomials are looked at."""
     x = place.variable
     fixed = {symbol: sp.Rational(value) for symbol, value in place.values.items()}
     middle = {symbol: (low + high) / 2 for symbol, (low, high) in place.ranges.items()}
     found = set()
-    zeros = {zero.xreplace(fixed) for zero in _denominators(place.formula) if zero.has(x)}
+    zeros = {zero.xreplace(fixed) for zero in _denominators(formula) if zero.has(x)}
+    zeros = {zero for zero in zeros if zero.is_polynomial(x)} if polynomials else zeros
     for zero, support in itertools.product(zeros, _supports(place)):
         for root, values in poles(zero, x, support):
             at = min(max(float(root), place.low), place.high)
-            if _is_pole(place, at, middle | {symbol: float(value) for symbol, value in values.items()}):
+            drawn = middle | {symbol: float(value) for symbol, value in values.items()}
+            if any(_grows(place, (formula, other), at, side, drawn) for side in (-1, 1)):
                 found.add(at)
     return tuple(sorted(found))
 
@@ -64,23 +75,18 @@ def _denominators(formula: sp.Expr) -> Iterator[sp.Expr]:
         yield _POLES_OF[node.func](*node.args)
 
 
-def _is_pole(place: Setting, at: float, drawn: dict[sp.Symbol, float]) -> bool:
-    return any(_grows(place, at, side, drawn) for side in (-1, 1))
-
-
-def _grows(place: Setting, at: float, side: int, drawn: dict[sp.Symbol, float]) -> bool:
-    """Whether, on one side, the fit grows without bound and the exact function does not grow with it."""
+def _grows(place: Setting, pair: tuple[sp.Expr, sp.Expr], at: float, side: int, drawn: dict[sp.Symbol, float]) -> bool:
+    """Whether, on one side, the first expression grows without bound and the other does not grow with it."""
     known = {**place.values, **drawn}
     symbols = (place.variable, *known)
     points = [at + side * step * (place.high - place.low) for step in STEPS]
     if not all(place.low <= point <= place.high for point in points):
         return False
     sizes = [
-        [abs(lower(program.result, symbols, "numpy", program.steps)(point, *known.values())) for point in points]
-        for program in (Program(place.formula), Program(place.exact))
+        [abs(lower(expression, symbols, "numpy")(point, *known.values())) for point in points] for expression in pair
     ]
-    fit, exact = (all(map(_more, each, each[1:])) for each in sizes)
-    return fit and not exact
+    first, other = (all(map(_more, each, each[1:])) for each in sizes)
+    return first and not other
 
 
 def _more(far: float, near: float) -> bool:

@@ -25,7 +25,7 @@ def main(arguments: list[str] | None = None) -> None:
     except click.UsageError as error:
         _fail(error.format_message())
     except (KeyboardInterrupt, click.Abort):
-        kept = "; rows that were written are kept, --resume goes on" if "bench" in sys.argv[1:2] else ""
+        kept = "; rows that were written are kept, --resume goes on" if sys.argv[1:2] in (["bench"], ["paper"]) else ""
         print(f"\nratfit: interrupted{kept}", file=sys.stderr)
         sys.exit(130)
     except BrokenPipeError:  # the reader, `head` say, has seen enough

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -99,6 +99,10 @@ def _check_measuring(options: dict[str, Any]) -> None:
         raise RatfitError("--resume needs the file to go on from: --out FILE")
     if options["exhaustive"] and options["samples"] is not None:
         raise RatfitError("--exhaustive takes every number there is: leave --samples out")
+    if options["sampling"] == "exhaustive":
+        raise RatfitError("--sampling exhaustive is said as --exhaustive")
+    if "none" in options["backends"] and len(options["backends"]) > 1:
+        raise RatfitError("--backend none is for the errors alone: leave the other --backend out, or none")
     if options["exhaustive"] and options["sampling"] != "uniform":
         raise RatfitError("--exhaustive is a sampling of its own: leave --sampling out")
     several = [options[name] is not None for name in ("coordinator", "processes", "process")]
@@ -212,7 +216,7 @@ def _finish(run: Run, old: list[Any] | None, options: dict[str, Any]) -> int:
     from ratfit.report.against import against_text, got_worse
     from ratfit.report.bench import rows, tables
 
-    found = list(rows(run))
+    found = _measured(rows(run), options)
     if not is_first():
         return 0
     if options["format_"] == "json":
@@ -224,7 +228,20 @@ def _finish(run: Run, old: list[Any] | None, options: dict[str, Any]) -> int:
         return 0
     changes = compare(old, found)
     print(against_text(changes), file=sys.stderr if options["format_"] == "json" else sys.stdout)
-    return 1 if got_worse(changes) else 0
+    compared = any(change.verdict in ("worse", "better", "same") for change in changes)
+    return 1 if got_worse(changes) or not compared else 0
+
+
+def _measured(found: Iterable[Any], options: dict[str, Any]) -> list[Any]:
+    """All rows. Where several processes measure and one is lost, this one ends at once: JAX would wait, then dump."""
+    try:
+        return list(found)
+    except RuntimeError:  # JAX's word for a process that does not answer
+        if options["coordinator"] is None:
+            raise
+        kept = "what was written is kept, begin them all again with --resume"
+        print(f"ratfit: another process was lost; {kept}", file=sys.stderr, flush=True)
+        os._exit(1)
 
 
 @click.command(short_help="Measured rows as a page.")

@@ -47,8 +47,7 @@ def rows(run: Run) -> Iterator[Row]:
     """
     written = _written(run)
     for number, job in enumerate(run.jobs, 1):
-        wanted = run.backends if is_timed(job) else ()
-        all_asked = [asked(job, run.how, backend) for backend in wanted or ("",)]
+        all_asked = [asked(job, run.how, backend) for backend in _backends(run, job)]
         known = [next((row for row in written if same_measurement(row, **each)), None) for each in all_asked]
         missing = [each["backend"] for each, row in zip(all_asked, known, strict=True) if row is None]
         if int(as_first_says([len(missing)])[0]):
@@ -58,12 +57,17 @@ def rows(run: Run) -> Iterator[Row]:
     progress("")
 
 
+def _backends(run: Run, job: Job) -> Sequence[str]:
+    """The backends that a job is timed on; of one whose errors alone are measured, one without a name."""
+    return (run.backends if is_timed(job) else ()) or ("",)
+
+
 def _written(run: Run) -> list[Row]:
     """The rows to go on from; a file of something else is refused before the work, not after."""
     held = read_rows(run.out) if run.out and is_first() else []
     if not run.resume:
         return []
-    every = [asked(job, run.how, backend) for job in run.jobs for backend in (run.backends if is_timed(job) else ("",))]
+    every = [asked(job, run.how, backend) for job in run.jobs for backend in _backends(run, job)]
     check_resumable(held, every, run.out or "")
     return held
 
@@ -77,9 +81,8 @@ def _measured(run: Run, job: Job, backends: Sequence[str], title: str) -> Iterat
     for record in measure(job, run.how, timed, about=run.about(job), watch=watch, say=meter.say):
         if run.out and is_first():
             append_row(run.out, record)
+            drop_checkpoint(run.out)  # the errors are in the row; what is left of a job is only timed
         yield record.to_line()
-    if run.out and is_first():
-        drop_checkpoint(run.out)
 
 
 def _watch(run: Run, key: Mapping[str, Any], meter: Meter) -> Watch:
@@ -160,7 +163,7 @@ def letter(number: int) -> str:
 
 def is_of_speed(remark: str) -> bool:
     """Whether a remark of a row's note is on its times, not on its errors."""
-    words = ("gamma", "noisy", "timed", "exact function", "nan or infinite", "fewer than", "fast-math")
+    words = ("gamma", "noisy", "timed", "copy floor", "additions", "nan or infinite", "fewer than", "fast-math")
     return any(word in remark for word in words)
 
 

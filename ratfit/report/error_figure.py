@@ -76,7 +76,7 @@ def _caption(shown: Sequence[ErrorCurve], count: int, against: str, is_scaled: b
     is_single = len(shown) == 1
     at = f", at {shown[0].label}" if is_single and shown[0].label else ""
     yield f"Above: {against} as the wide pale line, the fit as the thin one{at}."
-    pale = "; pale, the largest error of each" if is_single else ""
+    pale = "; pale, to both sides, the largest error of each" if is_single else ""
     yield f"Below: fit − exact, the mean of each of {len(shown[0].bias)} bins{pale}."
     if is_scaled:
         yield "Values and errors are parts of each setting's peak."

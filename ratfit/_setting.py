@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import numbers
 from collections.abc import Mapping
@@ -98,8 +99,14 @@ def arranged(fit: Any) -> Program:
     if fit.formula.has(sp.nan, sp.zoo, sp.oo, -sp.oo):  # infinite somewhere: a fit all the same, and measured as it is
         return Program(fit.formula)
     problem = fit.problem
-    ranges = {problem.variable: problem.domain, **{p: (p.low, p.high) for p in problem.parameters}}
-    found = schedule(fit.formula, problem.variable, ranges)
+    ranges = {problem.variable: tuple(problem.domain), **{p: (p.low, p.high) for p in problem.parameters}}
+    return _scheduled(fit.formula, problem.variable, tuple(ranges.items()))
+
+
+@functools.lru_cache(maxsize=64)
+def _scheduled(formula: sp.Expr, variable: sp.Symbol, ranges: tuple[tuple[sp.Symbol, tuple[Any, ...]], ...]) -> Program:
+    """Kept: one fit is measured at many settings and on many backends."""
+    found = schedule(formula, variable, dict(ranges))
     return Program(found.result, (*found.constants, *found.steps))
 
 

@@ -164,7 +164,7 @@ def _errors(fit: Any, exact: Any, low: Any, dtype: str) -> dict[str, Any]:
 
 
 @functools.cache
-def _format(dtype: str) -> tuple[int, int]:
+def number_format(dtype: str) -> tuple[int, int]:
     """The bits of the fraction and the least exponent of a dtype's normal numbers."""
     import ml_dtypes
     import numpy as np
@@ -178,7 +178,7 @@ def _in_ulp(error: Any, size: Any, dtype: str) -> Any:
     import jax
     import jax.numpy as jnp
 
-    fraction, least = _format(dtype)
+    fraction, least = number_format(dtype)
     biased = jnp.maximum(jax.lax.bitcast_convert_type(size, jnp.int64) >> 52, least + 1023)
     power = (fraction + 2 * 1023) - biased  # of two, with a float64's bias
     # It can be beyond 2**1023, at numbers below 2**-971, which float64 alone has: then in two steps.
@@ -216,15 +216,19 @@ def _counting(name: str, errors: dict[str, Any]) -> Any:
     """The errors of a kind; -1, not 0, where one is left out: it is never the worst, not even where all are 0."""
     import jax.numpy as jnp
 
-    return jnp.where(errors["nonzero" if name == "relative" else "finite"], errors[name], -1.0)
+    return jnp.where(_mask(name, errors), errors[name], -1.0)
+
+
+def _mask(name: str, errors: dict[str, Any]) -> Any:
+    """Where an error of that kind is defined."""
+    return errors["nonzero" if name == "relative" else "finite"]
 
 
 def _histograms(errors: dict[str, Any]) -> dict[str, Any]:
     import jax.numpy as jnp
 
     def histogram(name: str) -> Any:
-        counted = errors["nonzero" if name == "relative" else "finite"].astype(jnp.int64)
-        return jnp.zeros(BINS, jnp.int64).at[_bin(errors[name])].add(counted)
+        return jnp.zeros(BINS, jnp.int64).at[_bin(errors[name])].add(_mask(name, errors).astype(jnp.int64))
 
     return {f"{name}_bins": histogram(name) for name in ("absolute", "relative")}
 

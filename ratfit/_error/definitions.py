@@ -20,12 +20,19 @@ class Definition:
     value: Callable[[Totals], float | None]
 
 
+Value = Callable[[Totals], float | None]
+
+
+def _mean(name: str, over: str) -> Value:
+    return lambda totals: totals.mean(name, totals.counts[over])
+
+
 # What an error is divided by: the text that the formula shows, and its value.
-_NORMS: Mapping[str, tuple[str, Callable[[Totals], float | None]]] = {
+_NORMS: Mapping[str, tuple[str, Value]] = {
     "absolute": ("", lambda totals: 1.0),
     "peak": (" / max(|exact|)", lambda totals: totals.extremes["peak"]),
     "range": (" / (max(exact) - min(exact))", lambda totals: totals.extremes["highest"] - totals.extremes["lowest"]),
-    "mean": (" / mean(|exact|)", lambda totals: totals.mean("size", totals.counts["known"])),
+    "mean": (" / mean(|exact|)", _mean("size", "known")),
 }
 
 
@@ -33,23 +40,44 @@ LEAST_SQUARE = 2.0**-900
 """Below this mean square, what squares that are too small for float64 add to it may show."""
 
 
-def _rms(totals: Totals, square: str, error: str, over: str) -> float | None:
-    value, size = (totals.mean(name, totals.counts[over]) for name in (square, error))
-    return None if value is None or (value < LEAST_SQUARE and size != 0) else math.sqrt(value)
+def _rms(square: str, error: str, over: str) -> Value:
+    def value(totals: Totals) -> float | None:
+        mean, size = (_mean(name, over)(totals) for name in (square, error))
+        return None if mean is None or (mean < LEAST_SQUARE and size != 0) else math.sqrt(mean)
+
+    return value
+
+
+def _worst(name: str) -> Value:
+    def value(totals: Totals) -> float | None:
+        found = totals.worst[name][0]
+        return found if 0 <= found < math.inf else None
+
+    return value
 
 
 # What is made of the errors of all samples.
-_STATISTICS: Mapping[str, tuple[str, Callable[[Totals], float | None]]] = {
-    "mean": ("mean(|fit - exact|)", lambda totals: totals.mean("absolute", totals.counts["finite"])),
-    "rms": ("sqrt(mean((fit - exact)^2))", lambda totals: _rms(totals, "square", "absolute", "finite")),
-    "max": ("max(|fit - exact|)", lambda totals: _worst(totals, "absolute")),
-    "bias": ("mean(fit - exact)", lambda totals: totals.mean("error", totals.counts["finite"])),
+_STATISTICS: Mapping[str, tuple[str, Value]] = {
+    "mean": ("mean(|fit - exact|)", _mean("absolute", "finite")),
+    "rms": ("sqrt(mean((fit - exact)^2))", _rms("square", "absolute", "finite")),
+    "max": ("max(|fit - exact|)", _worst("absolute")),
+    "bias": ("mean(fit - exact)", _mean("error", "finite")),
 }
 
-
-def _worst(totals: Totals, name: str) -> float | None:
-    value = totals.worst[name][0]
-    return value if 0 <= value < math.inf else None
+# Those that are not divided by one number.
+_OWN: Mapping[str, Definition] = {
+    "relative_mean": Definition("mean(|fit - exact| / |exact|) over exact != 0", _mean("relative", "nonzero")),
+    "relative_rms": Definition(
+        "sqrt(mean((fit - exact)^2 / exact^2)) over exact != 0", _rms("relative_square", "relative", "nonzero")
+    ),
+    "relative_max": Definition("max(|fit - exact| / |exact|) over exact != 0", _worst("relative")),
+    "relative_bias": Definition("mean((fit - exact) / exact) over exact != 0", _mean("relative_signed", "nonzero")),
+    "ulp_mean": Definition(
+        "mean(|fit - exact| / ulp(exact)), ulp the unit in the last place of the type under test",
+        _mean("ulp", "finite"),
+    ),
+    "ulp_max": Definition("max(|fit - exact| / ulp(exact))", _worst("ulp")),
+}
 
 
 def _normalised(norm: str, statistic: str) -> Definition:
@@ -99,34 +127,7 @@ def _table() -> Iterator[tuple[str, Definition]]:
     for norm in _NORMS:
         for statistic in _STATISTICS:
             yield f"{norm}_{statistic}", _normalised(norm, statistic)
-    over = "over exact != 0"
-    nonzero = lambda totals: totals.counts["nonzero"]  # noqa: E731  # a name for it, used three times below
-    yield (
-        "relative_mean",
-        Definition(f"mean(|fit - exact| / |exact|) {over}", lambda totals: totals.mean("relative", nonzero(totals))),
-    )
-    yield (
-        "relative_rms",
-        Definition(
-            f"sqrt(mean((fit - exact)^2 / exact^2)) {over}",
-            lambda totals: _rms(totals, "relative_square", "relative", "nonzero"),
-        ),
-    )
-    yield "relative_max", Definition(f"max(|fit - exact| / |exact|) {over}", lambda totals: _worst(totals, "relative"))
-    yield (
-        "relative_bias",
-        Definition(
-            f"mean((fit - exact) / exact) {over}", lambda totals: totals.mean("relative_signed", nonzero(totals))
-        ),
-    )
-    yield (
-        "ulp_mean",
-        Definition(
-            "mean(|fit - exact| / ulp(exact)), ulp the unit in the last place of the type under test",
-            lambda totals: totals.mean("ulp", totals.counts["finite"]),
-        ),
-    )
-    yield "ulp_max", Definition("max(|fit - exact| / ulp(exact))", lambda totals: _worst(totals, "ulp"))
+    yield from _OWN.items()
     for name in BINNED:
         for suffix, share in QUANTILES.items():
             yield f"{name}_{suffix}", _quantile(name, share)

@@ -15,6 +15,7 @@ import sympy as sp
 
 from ratfit._ball import ball_function
 from ratfit._double_double import double_double
+from ratfit._error.chunk import number_format
 from ratfit._kernel import precision
 from ratfit._lower import lower
 from ratfit._parse import RatfitError
@@ -100,8 +101,5 @@ def _worst(truth: tuple[Any, ...], high: Any, low: Any, points: Any, dtype: str)
 
 
 def _ulp(value: float, dtype: str) -> float:
-    import ml_dtypes
-
-    about = ml_dtypes.finfo(dtype)
-    exponent = max(math.frexp(value)[1] - 1, int(about.minexp)) if value else int(about.minexp)
-    return math.ldexp(1.0, exponent - int(about.nmant))
+    fraction, least = number_format(dtype)
+    return math.ldexp(1.0, max(math.frexp(value)[1] - 1, least) - fraction if value else least - fraction)

@@ -7,15 +7,12 @@ import statistics
 import sys
 from collections.abc import Sequence
 
+from ratfit._record.machine import cores
+
 AT_FLOOR = 1.1  # a time within 10 % of the floor's is that of the memory, however little is computed
 NOISY = 1.25  # an interval wider than that from end to end says little
 DRIFT = 1.25  # the machine ran that much slower in one half of the rounds than in the other
 FEW = 100_000  # below that many samples the work of a call is not small beside that of the samples
-
-
-def cores() -> int:
-    """The cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
 
 
 def load() -> float:

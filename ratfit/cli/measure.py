@@ -140,14 +140,15 @@ def _run(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str,
     check_protocol(sampling, samples, options["seed"], options["dtype"])
     how = Measuring(samples, options["seed"], sampling, options["dtype"])
     found = _jobs(fit, shown, given, options)
-    about = _about(fit, shown, _command(options))
+    about = _about(fit, shown, _command())
     return Run(found, how, _backends(options["backends"]), about, options["out"], options["resume"])
 
 
 def _jobs(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str, Any]) -> list[Job]:
     from ratfit._bench import jobs, peer_jobs
+    from ratfit._setting import RANDOM
 
-    values = {n: v if v == "random" else float(exact(v, f"--set {n}")) for n, v in given.items()}
+    values = {n: v if v == RANDOM else float(exact(v, f"--set {n}")) for n, v in given.items()}
     settings: Sequence[Any] = [values] if values else list(shown.settings) if shown else []
     ends = tuple(_finite(end) for end in options["within"] or ())
     found = jobs(fit, settings, (ends[0], ends[1]) if ends else None)
@@ -184,7 +185,7 @@ def _about(fit: Fit, shown: Card | None, command: str) -> Any:
     return lambda job: about
 
 
-def _command(options: dict[str, Any]) -> str:
+def _command() -> str:
     """The words of this command, less those that say where its rows go and who else takes part."""
     import shlex
 

@@ -176,11 +176,6 @@ def _parameter(value: Any) -> str:
     return f"{short(value[0])}..{short(value[1])}" if isinstance(value, list) else short(value)
 
 
-def over_floor(row: Row) -> str:
-    """The fit's time over that of the copy floor."""
-    return short(row["fit_s"] / row["floor_s"]) if row["fit_s"] else "-"
-
-
 def gamma(row: Row) -> str:
     """gamma with its interval, as in "12.3 [11.9, 12.8]"."""
     if row["gamma"] is None:

@@ -35,6 +35,12 @@ class Hoisted:
     result: sp.Expr  # in the varying symbols and the names of `constants` and `steps`
     steps: Named
     constants: Named  # each an expression in the fixed parameters and earlier constants
+    varying: tuple[sp.Symbol, ...]
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """What its function takes: what varies, then the constants."""
+        return (*self.varying, *(symbol for symbol, _ in self.constants))
 
     def values(self, parameters: Mapping[sp.Symbol, float]) -> tuple[float, ...]:
         """The constants at these values of the parameters, computed in float64, in the order of `constants`."""
@@ -42,6 +48,11 @@ class Hoisted:
         for name, part in self.constants:
             known[name] = lower(part, tuple(known))(*known.values())
         return tuple(known[name] for name, _ in self.constants)
+
+    def on_arrays(self, values: tuple[float, ...], dtype: str) -> Callable[..., Any]:
+        """The function of the samples alone on NumPy, with these values of the constants in `dtype`."""
+        function, constants = lower(self.result, self.symbols, "numpy", self.steps), in_dtype(values, dtype)
+        return lambda *samples: function(*samples, *constants)
 
 
 def hoist(program: Program, varying: tuple[sp.Symbol, ...]) -> Hoisted:
@@ -78,7 +89,15 @@ def hoist(program: Program, varying: tuple[sp.Symbol, ...]) -> Hoisted:
         else:
             fixed[name] = constant(written)
     result = body(program.result.xreplace(fixed))
-    return Hoisted(result, tuple(steps), tuple((symbol, part) for part, symbol in constants.items()))
+    return Hoisted(result, tuple(steps), tuple((symbol, part) for part, symbol in constants.items()), varying)
+
+
+def in_dtype(values: tuple[float, ...], dtype: str) -> Any:
+    """Numbers as one NumPy array of a dtype; what is beyond it is infinite."""
+    import numpy as np
+
+    with np.errstate(all="ignore"):
+        return np.asarray(values, float).astype(dtype)
 
 
 @dataclass(frozen=True)
@@ -91,10 +110,7 @@ class Kernel:
 
     def constants(self, parameters: Mapping[sp.Symbol, float], dtype: str) -> list[Any]:
         """The constants at these values of the fixed parameters, as NumPy scalars of `dtype`."""
-        import numpy as np
-
-        with np.errstate(all="ignore"):
-            return [np.asarray(value).astype(dtype) for value in self.hoisted.values(parameters)]
+        return list(in_dtype(self.hoisted.values(parameters), dtype))
 
     def at(self, parameters: Mapping[sp.Symbol, float], dtype: str, device: Any = None) -> Callable[..., Any]:
         """The compiled kernel of the samples alone, at these values of the parameters, with constants in `dtype`."""
@@ -115,8 +131,7 @@ def kernel(program: Program, varying: tuple[sp.Symbol, ...]) -> Kernel:
     import jax
 
     hoisted = hoist(program, varying)
-    symbols = (*varying, *(symbol for symbol, _ in hoisted.constants))
-    function = lower(hoisted.result, symbols, "jax", hoisted.steps)
+    function = lower(hoisted.result, hoisted.symbols, "jax", hoisted.steps)
     return Kernel(hoisted, function, jax.jit(function))
 
 

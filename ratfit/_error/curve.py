@@ -6,7 +6,6 @@ from typing import Any
 
 from ratfit._error.chunk import exact_program
 from ratfit._kernel import hoist
-from ratfit._lower import lower
 from ratfit._setting import Setting
 
 INTERVALS, POINTS = 256, 16
@@ -66,9 +65,8 @@ def values_at(place: Setting, points: Any, dtype: str, drawn: Any) -> tuple[Any,
     for program, kind in ((place.program, dtype), (exact_program(place), "float64")):
         hoisted = hoist(program, (place.variable,))
         with np.errstate(all="ignore"):
-            constants = np.asarray(hoisted.values({**place.values, **drawn}), float).astype(kind)
-        symbols = (place.variable, *(symbol for symbol, _ in hoisted.constants))
-        found.append(lower(hoisted.result, symbols, "numpy", hoisted.steps)(points.astype(kind), *constants))
+            values = hoisted.values({**place.values, **drawn})
+        found.append(hoisted.on_arrays(values, kind)(points.astype(kind)))
     return found[0], found[1]
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ratfit._error.bits import KeptValue, kept_values
-from ratfit._error.chunk import LEFT_OUT, WORST
+from ratfit._error.chunk import LEFT_OUT
 from ratfit._error.curve import error_curve
 from ratfit._error.definitions import TABLE
 from ratfit._error.poles import poles_of, poles_of_exact
@@ -19,8 +19,7 @@ from ratfit._error.reference import FLOAT64, Reference, reference_for
 from ratfit._error.stream import Watch, pass_of, stream
 from ratfit._error.subnormal import flushed_samples
 from ratfit._error.totals import Totals
-from ratfit._kernel import precision
-from ratfit._sampling import bounds, check_protocol, count, drawing, resolve
+from ratfit._sampling import bounds, check_protocol, count, drawn, resolve
 from ratfit._setting import Setting, Value, setting
 
 VANISHING = 1000.0
@@ -130,24 +129,15 @@ def named(sampling: str, within: tuple[float, float] | None) -> str:
 
 def _places(totals: Totals, place: Setting, sampling: str, seed: int, dtype: str) -> dict[str, dict[str, Any]]:
     """Where each maximum is: the sample is drawn again by its counter."""
-    found = {}
-    for name in WORST:
-        value, counter = totals.worst[name]
-        if value >= 0:
-            at, *drawn = _sample(place, sampling, seed, counter, dtype)
-            found[f"{name}_max"] = {"at": at} | {s.name: v for s, v in zip(place.ranges, drawn, strict=True)}
-    return found
-
-
-def _sample(place: Setting, sampling: str, seed: int, counter: int, dtype: str) -> list[float]:
-    import jax
     import numpy as np
 
-    # Compiled, as the pass is: a compiler rounds a product and a sum once, and so may the last bit of a point differ.
-    run = jax.jit(drawing(sampling, dtype))
-    with precision("float64"):
-        drawn = run(np.uint64(seed), np.array([counter], np.uint64), bounds(place, dtype))
-    return [float(each[0]) for each in drawn]
+    counters = {name: counter for name, (value, counter) in totals.worst.items() if value >= 0}
+    if not counters:
+        return {}
+    points = drawn(sampling, seed, np.array(list(counters.values()), np.uint64), bounds(place, dtype), dtype)
+    symbols = ("at", *(symbol.name for symbol in place.ranges))
+    rows = zip(*(np.asarray(each, float).tolist() for each in points), strict=True)
+    return {f"{name}_max": dict(zip(symbols, row, strict=True)) for name, row in zip(counters, rows, strict=True)}
 
 
 def _worst(places: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:

@@ -16,10 +16,9 @@ import sympy as sp
 from ratfit._ball import ball_function
 from ratfit._double_double import double_double
 from ratfit._error.chunk import number_format
-from ratfit._kernel import precision
 from ratfit._lower import lower
 from ratfit._parse import RatfitError
-from ratfit._sampling import bounds, drawing
+from ratfit._sampling import bounds, drawn
 from ratfit._setting import Setting
 
 PLACES = 2049
@@ -48,9 +47,8 @@ def reference_for(place: Setting, sampling: str, seed: int, samples: int, dtype:
     import numpy as np
 
     counters = np.unique(np.linspace(0, samples - 1, PLACES).astype(np.uint64))
-    with precision("float64"):
-        (drawn,) = drawing(sampling, dtype)(np.uint64(seed), counters, bounds(place, dtype))
-    points = np.asarray(drawn).astype(np.float64)
+    (found,) = drawn(sampling, seed, counters, bounds(place, dtype), dtype)
+    points = np.asarray(found).astype(np.float64)
     expression = place.exact.xreplace({symbol: sp.Rational(value) for symbol, value in place.values.items()})
     try:
         truth = _truth(expression, place.variable, tuple(points.tolist()))

@@ -13,6 +13,7 @@ from ratfit._sampling.check import check_protocol as check_protocol
 from ratfit._sampling.check import resolve as resolve
 from ratfit._sampling.draw import draw as draw
 from ratfit._sampling.draw import drawing as drawing
+from ratfit._sampling.draw import drawn as drawn
 from ratfit._sampling.draw import sample as sample
 from ratfit._sampling.ends import bounds as bounds
 from ratfit._sampling.exhaustive import EXHAUSTIVE as EXHAUSTIVE

@@ -42,11 +42,24 @@ def draw(sampling: str, low: float, high: float, seed: int, start: int, size: in
     end of its domain, where it may be 0/0, or beyond. `exhaustive` alone visits the ends.
     """
     import jax
+    import jax.numpy as jnp
+
+    with jax.enable_x64(True):
+        counters = start + jnp.arange(size, dtype=jnp.uint64)
+    (points,) = drawn(sampling, seed, counters, [ends(low, high, dtype)], dtype)
+    return points
+
+
+def drawn(sampling: str, seed: int, counters: Any, ranges: list[Any], dtype: str) -> tuple[Any, ...]:
+    """The samples of these counters, as a kernel draws them: the variable, then the parameters drawn at random.
+
+    **Arguments:** the protocol by its canonical name, the `seed`, the `counters` (uint64) and the `bounds`.
+    """
+    import jax
     import numpy as np
 
     with jax.enable_x64(True):
-        (points,) = _compiled(sampling, size, dtype)(np.uint64(seed), np.uint64(start), [ends(low, high, dtype)])
-    return points
+        return _compiled(sampling, dtype)(np.uint64(seed), counters, ranges)
 
 
 @functools.cache
@@ -108,11 +121,8 @@ def _rounded(exact: Any, dtype: str) -> Any:
 
 
 @functools.cache
-def _compiled(sampling: str, size: int, dtype: str) -> Callable[..., Any]:
+def _compiled(sampling: str, dtype: str) -> Drawing:
+    """Compiled, as in a larger kernel: a compiler rounds alike only what it sees."""
     import jax
-    import jax.numpy as jnp
 
-    def points(seed: Any, start: Any, ranges: list[Any]) -> Any:
-        return drawing(sampling, dtype)(seed, start + jnp.arange(size, dtype=jnp.uint64), ranges)
-
-    return jax.jit(points)
+    return jax.jit(drawing(sampling, dtype))

@@ -105,10 +105,10 @@ def _evaluated(entrant: Entrant, samples: tuple[Any, ...], dtype: str) -> Any:
     """The formula on NumPy in a dtype, in chunks: its tape holds an array for each step."""
     import numpy as np
 
-    function, constants = entrant.function(), tuple(entrant.rounded(dtype))
+    function = entrant.hoisted.on_arrays(entrant.constants, dtype)
     starts = range(0, samples[0].size, CHUNK)
     chunks = (tuple(array[start : start + CHUNK].astype(dtype) for array in samples) for start in starts)
-    return np.concatenate([np.asarray(function(*chunk, *constants), float) for chunk in chunks])
+    return np.concatenate([np.asarray(function(*chunk), float) for chunk in chunks])
 
 
 def _parts(contest: Contest) -> tuple[Any, int]:

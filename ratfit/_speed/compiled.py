@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from ratfit._kernel import in_dtype
 from ratfit._speed.c_source import c_source
 from ratfit._speed.compiler import compiler, load, version
 from ratfit._speed.contest import NAMES, Contest, Entrant, Runs
@@ -66,7 +67,7 @@ def _call(function: Any, entrant: Entrant, contest: Contest) -> _Call:
 
     function.argtypes, function.restype = (ctypes.c_size_t, *(ctypes.c_void_p,) * 3), None
     samples = tuple(np.ascontiguousarray(array) for array in contest.samples)
-    constants = entrant.rounded(contest.dtype)
+    constants = in_dtype(entrant.constants, contest.dtype)
     # nan at first: what a function leaves out is no value that an earlier one has left there.
     out = np.full(samples[0].size, np.nan, contest.dtype)
     columns = (ctypes.c_void_p * len(samples))(*(array.ctypes.data for array in samples))

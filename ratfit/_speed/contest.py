@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -11,8 +10,8 @@ from typing import Any
 import sympy as sp
 
 from ratfit._kernel import Hoisted, Program, hoist
-from ratfit._lower import Step, lower, tape
-from ratfit._sampling import bounds, drawing
+from ratfit._lower import Step, tape
+from ratfit._sampling import bounds, drawn
 from ratfit._setting import Setting
 
 NAMES = ("exact function", "fit", "copy floor")
@@ -29,25 +28,9 @@ class Entrant:
     constants: tuple[float, ...]  # in float64; each backend rounds them to the dtype under test
 
     @property
-    def symbols(self) -> tuple[sp.Symbol, ...]:
-        """What its function takes: what varies, then the constants."""
-        return (*self.varying, *(symbol for symbol, _ in self.hoisted.constants))
-
-    @property
     def steps(self) -> tuple[Step, ...]:
         """The operations on each sample."""
-        return tape(self.hoisted.result, self.symbols, self.hoisted.steps)
-
-    def rounded(self, dtype: str) -> Any:
-        """The constants in a dtype, as one array."""
-        import numpy as np
-
-        with np.errstate(over="ignore"):
-            return np.asarray(self.constants, float).astype(dtype)
-
-    def function(self) -> Callable[..., Any]:
-        """The function of the symbols on NumPy."""
-        return lower(self.hoisted.result, self.symbols, "numpy", self.hoisted.steps)
+        return tape(self.hoisted.result, self.hoisted.symbols, self.hoisted.steps)
 
 
 @dataclass(frozen=True)
@@ -87,18 +70,8 @@ def _entrant(name: str, program: Program, place: Setting) -> Entrant:
 
 
 def _samples(place: Setting, samples: int, seed: int, dtype: str) -> tuple[Any, ...]:
-    import jax
-    import jax.numpy as jnp
     import numpy as np
 
-    with jax.enable_x64(True):
-        counters = jnp.arange(samples, dtype=jnp.uint64)
-        drawn = _drawn(dtype)(np.uint64(seed), counters, bounds(place, dtype))
-    return tuple(map(np.asarray, drawn))
-
-
-@functools.cache
-def _drawn(dtype: str) -> Callable[..., tuple[Any, ...]]:
-    import jax
-
-    return jax.jit(drawing("uniform", dtype))
+    return tuple(
+        map(np.asarray, drawn("uniform", seed, np.arange(samples, dtype=np.uint64), bounds(place, dtype), dtype))
+    )

@@ -14,5 +14,5 @@ def prepare(contest: Contest) -> Runs:
 
 
 def _call(entrant: Entrant, contest: Contest) -> Callable[[], Any]:
-    function, constants = entrant.function(), tuple(entrant.rounded(contest.dtype))
-    return lambda: function(*contest.samples, *constants)
+    function = entrant.hoisted.on_arrays(entrant.constants, contest.dtype)
+    return lambda: function(*contest.samples)

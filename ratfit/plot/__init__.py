@@ -1,0 +1,3 @@
+"""Pictures: functions that draw on axes, return them and never show anything."""
+
+from ratfit.plot.study import plot_study as plot_study

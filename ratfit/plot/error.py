@@ -1,0 +1,126 @@
+"""The error strip: how far a fit is off over its domain, with the worst point marked and its value beside it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ratfit.plot.style import BLUE, GREY, significant
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+PERCENT, PLAIN = "%", ""
+"""Units of an error: a part of something, shown in percent, or a difference as it is."""
+
+ROUNDING = 1e-14
+"""Relative errors below this are float64's own rounding, and say nothing of the fit."""
+
+_NEEDED = 22
+"""Points of height that the text at the worst point takes, with its distances."""
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The place of the largest finite error, and that error with its sign; nan and nan where none is finite."""
+
+    place: float
+    error: float
+
+
+def worst_of(places: Sequence[float], errors: Sequence[float]) -> Worst:
+    known = [(abs(e), p, e) for p, e in zip(places, errors, strict=True) if math.isfinite(e)]
+    if not known:
+        return Worst(math.nan, math.nan)
+    _, place, error = max(known, key=lambda found: found[0])
+    return Worst(float(place), float(error))
+
+
+def worst_text(worst: Worst, *, variable: str = "", unit: str = PERCENT) -> str:
+    """The words "worst 1.9 % at v = 0.31"; two digits of the error, for it is known at drawn points alone."""
+    if not math.isfinite(worst.error):
+        return "no finite error"
+    if worst.error == 0 or (unit == PERCENT and abs(worst.error) < ROUNDING):
+        return "no error beyond float64's rounding" if worst.error else "no error"
+    number = f"{significant(100 * worst.error, 2)} %" if unit == PERCENT else significant(worst.error, 2)
+    place = significant(worst.place, 2)
+    return f"worst {number} at {variable} = {place}" if variable else f"worst {number} at {place}"
+
+
+def draw_error(
+    axes: Axes,
+    places: Sequence[float],
+    errors: Sequence[float],
+    *,
+    colour: str = BLUE,
+    label: str = "",
+    dashes: Any = "-",
+    variable: str = "",
+    unit: str = PERCENT,
+) -> None:
+    """Draws an error curve over a zero line, marks its worst point, and writes the value beside it, clear of the curve.
+
+    Arguments: `axes`, those of the strip; `places` and signed `errors`, nan for a gap; `label`, the curve's in a
+    legend; `variable`, the name in the text; `unit`, PERCENT where the errors are parts (0.019 is written 1.9 %), PLAIN
+    where they are differences. For several curves in one strip see `draw_error_curve`: their texts would meet.
+    """
+    worst = draw_error_curve(axes, places, errors, colour=colour, label=label, dashes=dashes, unit=unit)
+    if not math.isfinite(worst.error):
+        return
+    low, high = min(places), max(places)
+    share = (worst.place - low) / (high - low or 1)
+    axes.annotate(
+        worst_text(worst, variable=variable, unit=unit),
+        (worst.place, worst.error),
+        xytext=(0, 6 if worst.error >= 0 else -6),
+        textcoords="offset points",
+        ha="left" if share < 0.25 else "right" if share > 0.75 else "center",
+        va="bottom" if worst.error >= 0 else "top",
+        fontsize="small",
+        annotation_clip=False,
+    )
+    _make_room(axes)
+
+
+def draw_error_curve(
+    axes: Axes,
+    places: Sequence[float],
+    errors: Sequence[float],
+    *,
+    colour: str = BLUE,
+    label: str = "",
+    dashes: Any = "-",
+    unit: str = PERCENT,
+) -> Worst:
+    """The same without the text: returns the worst point, for `worst_text` in a legend."""
+    worst = worst_of(places, errors)
+    axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
+    axes.plot(places, errors, color=colour, linestyle=dashes, linewidth=1.4, label=label or "_error", zorder=2)
+    if math.isfinite(worst.error):
+        axes.plot([worst.place], [worst.error], "o", color=colour, markersize=5, clip_on=False, zorder=4)
+    _set_ticks(axes, unit)
+    _make_room(axes)
+    return worst
+
+
+def _set_ticks(axes: Axes, unit: str) -> None:
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    factor, suffix = (100, " %") if unit == PERCENT else (1, "")
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{significant(factor * value, 3)}{suffix}"))
+
+
+def _make_room(axes: Axes) -> None:
+    """Heights that hold all curves, and beyond the worst points the texts written there."""
+    low, high = axes.dataLim.intervaly
+    if not low < high:
+        low, high = low - 1e-16, high + 1e-16
+    points = 72 * axes.get_window_extent().height / axes.figure.dpi
+    sides = {text.xy[1] >= 0 for text in axes.texts}  # type: ignore[attr-defined]  # annotations, ours
+    share = min(_NEEDED / points, 0.4)
+    above, below = (share if side in sides else 0.07 for side in (True, False))
+    unit = (high - low) / (1 - above - below)
+    axes.set_ylim(low - below * unit, high + above * unit)

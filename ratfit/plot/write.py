@@ -1,0 +1,41 @@
+"""A figure as a file: SVG, PDF or PNG by its suffix, whole or not at all, and the same bytes for the same figure."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ratfit._parse import RatfitError
+from ratfit._record import write_bytes
+from ratfit.plot.style import settings
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# What a file would say of the moment it was made in: two runs are then the same to the last byte.
+_UNSAID: dict[str, dict[str, Any]] = {
+    "svg": {"Date": None},
+    "pdf": {"CreationDate": None},
+    "png": {},
+}
+
+DOTS = 200
+"""Dots an inch of a PNG."""
+
+
+def picture_format(file: str | Path) -> str:
+    """The format that a picture's suffix asks for: a command asks before it does any work. RatfitError for others."""
+    suffix = Path(file).suffix.lower().removeprefix(".")
+    if suffix not in _UNSAID:
+        raise RatfitError(f"--plot {file}: name the picture something.svg, something.pdf or something.png")
+    return suffix
+
+
+def write_picture(figure: Figure, file: str | Path) -> None:
+    """Writes a figure as its file's suffix says; RatfitError for another suffix and for a place that takes no file."""
+    format_ = picture_format(file)
+    drawn = BytesIO()
+    with settings():
+        figure.savefig(drawn, format=format_, dpi=DOTS, metadata=_UNSAID[format_])
+    write_bytes(file, drawn.getvalue())

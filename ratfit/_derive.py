@@ -14,7 +14,7 @@ from ratfit._diagnosis import advice, contradiction, explained, remarks
 from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Fit
 from ratfit._generators import DIGITS
-from ratfit._parse import RatfitError
+from ratfit._parse import RatfitError, shortened
 from ratfit._problem import Problem
 from ratfit._solver import Solution, Undecided, pick
 from ratfit._system import System, equations, polynomial_equations
@@ -68,7 +68,7 @@ def _out_of_time(problem: Problem, known: _Known, timeout: float | None) -> Fit:
     with TimeLimit(TIDYING_SECONDS):
         kept = _distinct(known.candidates)
     found = [c for c in kept if not c.reason]
-    shown = [str(c.expression)[:200] for c in found[:3]] + ["..."] * (len(found) > 3)
+    shown = [shortened(str(c.expression)) for c in found[:3]] + ["..."] * (len(found) > 3)
     names = f"; found so far: {', '.join(shown)}" if found else ""
     reason = f"gave up after {timeout:g} s ({so_far}){names}; allow more with --timeout, or state equals"
     rejected = tuple(c for c in kept if c.reason)

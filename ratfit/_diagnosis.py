@@ -15,7 +15,7 @@ from ratfit._deadline import TimeLimit
 from ratfit._field import is_zero, numerical_rank
 from ratfit._fit import Candidate, Fit
 from ratfit._jets import same
-from ratfit._parse import RatfitError
+from ratfit._parse import RatfitError, shortened
 from ratfit._problem import Problem
 from ratfit._rows import Row, rows, rows_of
 from ratfit._solver import Undecided, pick
@@ -43,11 +43,16 @@ def contradiction(system: System) -> str:
 
 def explained(fit: Fit, route: str) -> Fit:
     """The honest no with its reasons: poles, or a smallest set of conditions that no fraction keeps together."""
-    reasons = [f"{c.expression}: {_unattainable(c)}{c.reason}" for c in fit.rejected]
+    reasons = [f"{shortened(str(c.expression))}: {_unattainable(c)}{c.reason}" for c in fit.rejected]
     if any(c.conditions and all(k.holds for k in c.conditions) for c in fit.rejected):
         reasons.append(
             "the conditions hold, but the fit is no finite real function on all of the domain: narrow that, or the "
             "parameters' ranges, raise a degree, or add a condition"
+        )
+    elif any(map(_is_undecided, fit.rejected)):
+        reasons.append(
+            "an answer that nobody could prove or refute is no clash: state what the conditions equal, as simple "
+            "numbers, or place them elsewhere"
         )
     elif fit.route == "nonlinear":
         reasons.append(
@@ -57,6 +62,12 @@ def explained(fit: Fit, route: str) -> Fit:
     else:
         reasons.append(_clash_in_words(fit.problem, route))
     return replace(fit, reasons=tuple(reasons))
+
+
+def _is_undecided(candidate: Candidate) -> bool:
+    """Whether algebra and numbers disagree on a condition, and none fails."""
+    held = [checked.holds for checked in candidate.conditions]
+    return None in held and False not in held
 
 
 def _clash_in_words(problem: Problem, route: str) -> str:
@@ -101,7 +112,7 @@ def _consistent(problem: Problem, route: str) -> bool:
     try:
         system = equations(problem)
         found = candidates(system, pick(system, "auto" if route == "linear" else route))
-        return any(not candidate.reason for candidate in found)
+        return any(not candidate.reason or _is_undecided(candidate) for candidate in found)
     except (RatfitError, Undecided):  # Related is a RatfitError too
         return True
 

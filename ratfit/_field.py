@@ -7,6 +7,7 @@ rank without a word. Here every constant is first written in independent generat
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from collections.abc import Set as AbstractSet
 from functools import cached_property
 from math import lcm
 from typing import Any
@@ -32,15 +33,17 @@ Element = Any  # an element of sympy's fraction field, or of a polynomial ring o
 class Field:
     """Q(t1, ..., tk)[a1, ..., ar] modulo one monic relation for each a; every symbol that occurs is a generator.
 
-    Arguments: `expressions` that must have a place in it, made of constants, parameters and open coefficients.
+    Arguments: `expressions` that must have a place in it, made of constants, parameters and open coefficients;
+    `apart`, sines and cosines that are generators of their own, whatever relations they have: an identity that holds
+    so holds, but nothing follows from one that does not.
     Raises RatfitError for an expression that is not a real number there.
     """
 
-    def __init__(self, expressions: Iterable[sp.Expr]) -> None:
+    def __init__(self, expressions: Iterable[sp.Expr], apart: AbstractSet[sp.Expr] = frozenset()) -> None:
         expressions = [sp.sympify(e) for e in expressions]  # Python integers to sympy's; never text
-        self._basis, flat = _flattened(expressions, half_angles=False)
+        self._basis, flat = _flattened(expressions, False, apart)
         if self._basis.prefers_half_angles(expressions, flat):
-            self._basis, flat = _flattened(expressions, half_angles=True)
+            self._basis, flat = _flattened(expressions, True, apart)
         for expression in flat:
             self._basis.register_roots(expression)
         atoms = list(self._basis.atoms)
@@ -225,8 +228,10 @@ class Field:
         return not self.encode(expression)
 
 
-def _flattened(expressions: Sequence[sp.Expr], half_angles: bool) -> tuple[Generators, list[sp.Expr]]:
-    basis = Generators(half_angles)
+def _flattened(
+    expressions: Sequence[sp.Expr], half_angles: bool, apart: AbstractSet[sp.Expr]
+) -> tuple[Generators, list[sp.Expr]]:
+    basis = Generators(half_angles, apart)
     basis.register_angles(expressions)
     return basis, [basis.flatten(e) for e in expressions]
 

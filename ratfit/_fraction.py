@@ -8,7 +8,7 @@ import mpmath
 import sympy as sp
 
 from ratfit._field import Field
-from ratfit._generators import DIGITS
+from ratfit._generators import DIGITS, far_turns
 from ratfit._poles import polynomial_roots
 from ratfit._target import sample_values
 
@@ -88,7 +88,7 @@ def presentable(factor: sp.Expr, numerator: sp.Expr, denominator: sp.Expr, x: sp
             scale, plain = _without_scale(base, x, inside)
             constant *= scale ** (exponent * sign)
             shown.append(plain ** (exponent * sign))
-    field = Field([constant])
+    field = Field([constant], far_turns([constant]))
     above, below = sp.fraction(sp.together(field.decode(field.encode(constant))))
     return factor * above * sp.Mul(*shown) / below
 
@@ -99,7 +99,7 @@ def _without_scale(base: sp.Expr, x: sp.Symbol, inside: sp.Expr) -> tuple[sp.Exp
     collected: dict[sp.Expr, sp.Expr] = {}
     for coefficient, dependent in pairs:
         collected[dependent] = collected.get(dependent, sp.S.Zero) + coefficient
-    field = Field(collected.values())
+    field = Field(collected.values(), far_turns(collected.values()))
     elements = [field.encode(c) for c in collected.values()]
     short = field.simplest(elements)
     place = next(i for i, e in enumerate(elements) if e)

@@ -14,6 +14,7 @@ a rank compares it with the numerical one (`numerical_rank`).
 from __future__ import annotations
 
 from collections.abc import Iterable
+from collections.abc import Set as AbstractSet
 from math import lcm
 
 import mpmath
@@ -47,6 +48,19 @@ def numerical(expression: sp.Expr, digits: int = DIGITS) -> mpmath.mpf:
         return mpmath.mpf(sp.Float(value, digits)._mpf_)
 
 
+MOST_TURNS = 2
+"""How many times an angle's part may be turned: the sine of 17 parts is a polynomial of degree 17."""
+
+
+def far_turns(expressions: Iterable[sp.Expr]) -> frozenset[sp.Expr]:
+    """The sines and cosines of angles with a part that is to be turned more than MOST_TURNS times for one of them."""
+    calls = {call for e in expressions for call in e.atoms(sp.sin, sp.cos)}
+    parts = Generators()
+    parts.register_angles(calls)
+    far = {monomial for call in calls for monomial, turns in parts.turns(call.args[0]) if turns > MOST_TURNS}
+    return frozenset(call for call in calls if any(monomial in far for monomial, _ in parts.turns(call.args[0])))
+
+
 class Generators:
     """The generators, and how an expression is written in them.
 
@@ -54,8 +68,9 @@ class Generators:
     symbol -> its monic relation. `originals` gives each its expression in the constants as they were given.
     """
 
-    def __init__(self, half_angles: bool = False) -> None:
+    def __init__(self, half_angles: bool = False, apart: AbstractSet[sp.Expr] = frozenset()) -> None:
         self._half_angles = half_angles
+        self._apart = apart  # sines and cosines that are taken for independent of all others, only to write something
         self._dummies: dict[sp.Expr, sp.Symbol] = {}
         self._meaning: dict[sp.Symbol, sp.Expr] = {}
         self._angles: dict[sp.Expr, int] = {}
@@ -93,11 +108,16 @@ class Generators:
     def register_angles(self, expressions: Iterable[sp.Expr]) -> None:
         """Finds, for each monomial inside a sine or cosine, the largest part that all its angles are multiples of."""
         for expression in expressions:
-            for call in expression.atoms(*_TURNING):
+            for call in expression.atoms(*_TURNING) - self._apart:
                 scale = 2 if self._half_angles and isinstance(call, sp.tan) else 1
                 for monomial, coefficient in _monomials(call.args[0]):
                     q = int((scale * coefficient).q)
                     self._angles[monomial] = lcm(self._angles.get(monomial, 1), q)
+
+    def turns(self, angle: sp.Expr) -> list[tuple[sp.Expr, int]]:
+        """The monomials of an angle, pi aside, each with the number of its parts that the angle holds."""
+        pairs = [(monomial, coefficient) for monomial, coefficient in _monomials(angle) if monomial is not sp.pi]
+        return [(monomial, abs(int(coefficient * self._angles[monomial]))) for monomial, coefficient in pairs]
 
     def flatten(self, expression: sp.Expr) -> sp.Expr:
         """The expression in atoms with sums, products and rational powers alone."""
@@ -116,6 +136,8 @@ class Generators:
             return self._algebraic(e)
         if isinstance(e, sp.exp) or e is sp.E or e.is_Pow:
             return self._exponential(e)
+        if e in self._apart:
+            return self._atom(e)
         if isinstance(e, (sp.sin, sp.cos)):
             cosine, sine = self._turn(e.args[0])
             return sine if isinstance(e, sp.sin) else cosine

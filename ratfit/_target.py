@@ -22,7 +22,9 @@ INTEGRAL_SECONDS = 5.0
 INSIDE = ("1/1000", "1/8", "1/4", "3/8", "1/2", "5/8", "3/4", "7/8", "999/1000")
 """Fractions of a parameter's range at which signs are looked at: near both ends, and between."""
 
-_JUMPING = (sp.sign, sp.floor, sp.ceiling, sp.Heaviside, sp.Piecewise)
+_STAIRS = (sp.floor, sp.ceiling)
+_JUMPING = (sp.sign, *_STAIRS, sp.Heaviside, sp.Piecewise)
+_KINKED = (*_JUMPING, sp.Abs, sp.Min, sp.Max)
 
 
 def exact(value: Exact, what: str = "value") -> sp.Expr:
@@ -116,11 +118,13 @@ class Target:
                 return value
         low, high = self.domain
         sides = [-1] if at == high else [1] if at == low else [1, -1]
+        if len(sides) == 2 and order and self.expression.has(*_KINKED):
+            self.derivative(at, order - 1)  # sign(x) has the slope 0 on both sides of 0, and no slope there
         found = [_one_sided(self.expression, self.variable, at, side, order) for side in sides]
         if len(found) == 2 and not _numerically_equal(*found):
             raise RatfitError(
-                f"the target's derivative of order {order} at {self.variable} = {at} is {found[1]} from the left "
-                f"and {found[0]} from the right; state it with equals"
+                f"{_derivative_at(order, self.variable, at)} is {found[1]} from the left and {found[0]} from the "
+                "right; state it with equals"
             )
         return found[0]
 
@@ -270,7 +274,22 @@ def _moved(expression: sp.Expr, variable: sp.Symbol, at: sp.Expr, side: int, ord
     """The derivative as a function of the distance from `at`, to the one side or the other."""
     # xreplace where subs would do as well: for a symbol they agree, and it asks no assumptions on the way.
     moved = expression.xreplace({variable: sp.expand(at + side * _DISTANCE)})
-    return sp.diff(moved, _DISTANCE, order) * side**order
+    steps = {call: sp.Dummy() for call in moved.atoms(*_STAIRS)}  # of which sympy has no derivative
+    derivative = sp.diff(moved.xreplace(steps), _DISTANCE, order) * side**order
+    return derivative.xreplace({constant: _step_beside(call) for call, constant in steps.items()})
+
+
+def _step_beside(call: sp.Expr) -> sp.Expr:
+    """What a floor or a ceiling is next to the place; the call itself where that depends on a parameter.
+
+    **Fails** with `RatfitError` where it has one value after the other on the way to the place.
+    """
+    near, nearer = (call.xreplace({_DISTANCE: sp.Rational(1, 10**digits)}) for digits in (20, 40))
+    if not near.is_number:
+        return call
+    if near != nearer:
+        raise RatfitError("the target has ever more steps on the way to a place of a condition; state it with equals")
+    return near
 
 
 def _substituted(derivative: sp.Expr) -> sp.Expr | None:
@@ -287,8 +306,12 @@ def _one_sided(expression: sp.Expr, variable: sp.Symbol, at: sp.Expr, side: int,
     value = _substituted(derivative)
     if value is not None:
         return value
-    where = f"the target's derivative of order {order}" if order else "the target's value"
-    return _confirmed_limit(derivative, f"{where} at {variable} = {at}")
+    return _confirmed_limit(derivative, _derivative_at(order, variable, at))
+
+
+def _derivative_at(order: int, variable: sp.Symbol, at: sp.Expr) -> str:
+    what = f"the target's derivative of order {order}" if order else "the target's value"
+    return f"{what} at {variable} = {at}"
 
 
 def _confirmed_limit(function: sp.Expr, where: str) -> sp.Expr:

@@ -13,6 +13,7 @@ import scipy.optimize
 import sympy as sp
 
 import ratfit as rf
+from ratfit._diagnosis import explained
 from ratfit._inline import Words, problem_of_words
 from ratfit._solver.nonlinear import search, tabulated
 
@@ -259,6 +260,27 @@ def test_a_family_is_offered_conditions_that_single_out_one():
     assert whole.status == "unique"  # the advice, taken
 
 
+@pytest.mark.parametrize("far", ["17/32", "5/2"])
+def test_sines_of_places_far_in_parts_are_left_as_they_are(far):
+    """In the field the sine of 17/32 is a polynomial of degree 17 in the cosine of 1/32, which nobody can read."""
+    places = ["1/2", far]
+    fit = fit_of("sin(x)", f"1/2 {far}", "2/1", value=places, derivative=places)
+    assert fit.status == "unique" and len(str(fit.expression)) < 1000
+    assert fit.expression.atoms(sp.sin) == {sp.sin(sp.sympify(place)) for place in places}
+    x = fit.problem.variable
+    for place in map(sp.sympify, places):
+        assert abs(sp.N(fit.expression.subs(x, place) - sp.sin(place), 60)) < 1e-50
+        assert abs(sp.N(fit.expression.diff(x).subs(x, place) - sp.cos(place), 60)) < 1e-50
+
+
+def test_what_is_undecided_is_no_clash():
+    problem = problem_of_words("x", Words(on=("0", "1"), form="1/1", value=["0", "1"]))
+    value = problem.conditions[0]
+    undecided = rf.Candidate(sp.Symbol("x"), {}, (rf.Checked(value, sp.S.Zero, None, None),), "it is undecided")
+    fit = explained(rf.Fit(problem, "rejected", "linear", rejected=(undecided,)), "linear")
+    assert "no clash" in fit.reasons[-1] and "equal" in fit.reasons[-1]
+
+
 def test_an_unattainable_node_is_named():
     """Through (0, 1), (1, 1) goes no [1/1] but 1, which misses (2, 2)."""
     fit = fit_of("x", "0 2", "1/1", value=["0;equals=1", "1;equals=1", "2;equals=2"])
@@ -279,6 +301,45 @@ def test_out_of_time_keeps_what_was_found(monkeypatch):
     assert fit.status == "timeout" and fit.expression is None
     assert any(same(c.expression, "1/(1 + 2*x)") for c in fit.candidates)
     assert "found so far: 1/(2*x + 1)" in fit.reasons[0]
+
+
+# target, domain, place, its first three derivatives there: the one-sided ones at an end and within a step
+ONE_SIDED = [
+    ("floor(x)", "0 3", "3", ["2", "0", "0"]),
+    ("floor(x)", "0 3", "3/2", ["1", "0", "0"]),
+    ("x*floor(x)", "0 3", "5/2", ["5", "2", "0"]),
+    ("x*ceiling(2*x)", "0 1", "0", ["0", "1", "0"]),
+    ("x + floor(x**2)", "0 2", "2", ["5", "1", "0"]),
+    ("floor(sin(x))", "0 3", "pi/2", ["0", "0", "0"]),
+    ("sign(x)", "0 1", "0", ["1", "0", "0"]),
+    ("x*Abs(x)", "-1 1", "-1", ["-1", "2", "-2"]),
+    ("Max(x, 1 - x)", "0 1", "1", ["1", "1", "0"]),
+]
+
+
+@pytest.mark.parametrize(("target", "on", "at", "expected"), ONE_SIDED)
+def test_derivatives_of_steps_and_kinks(target, on, at, expected):
+    problem = problem_of_words(target, Words(on=tuple(on.split()), form="0/0", value=["0;equals=1"]))
+    found = [problem.target.derivative(sp.sympify(at), order) for order in range(3)]
+    assert found == [sp.sympify(value) for value in expected]
+
+
+# target, the place of a jump or a kink, the order asked for, what differs there
+TWO_SIDED = [
+    ("floor(x)", "1", "value", "0 from the left and 1"),
+    ("floor(x)", "1", "derivative", "value at x = 1 is 0 from the left and 1"),
+    ("sign(x - 1)", "1", "derivative", "value at x = 1 is -1 from the left and 1"),
+    ("Abs(x - 1)", "1", "derivative", "order 1 at x = 1 is -1 from the left and 1"),
+    ("Abs(x - 1)", "1;order=2", "derivative", "order 1 at x = 1 is -1 from the left and 1"),
+    ("floor(1/(x - 1)**2)", "1", "derivative", "ever more steps"),
+]
+
+
+@pytest.mark.parametrize(("target", "at", "kind", "said"), TWO_SIDED)
+def test_where_a_target_jumps_it_has_no_derivative(target, at, kind, said):
+    with pytest.raises(rf.RatfitError, match=said) as caught:
+        fit_of(target, "0 3", "2/1", **{kind: [at]})
+    assert "equals" in str(caught.value) and "Subs" not in str(caught.value)
 
 
 BAD = {

@@ -18,6 +18,7 @@ products, powers and calls, their checks, the builder that the grammar calls and
 
 from ratfit._parse.errors import ParseError as ParseError
 from ratfit._parse.errors import RatfitError as RatfitError
+from ratfit._parse.errors import shortened as shortened
 from ratfit._parse.functions import FUNCTIONS as FUNCTIONS
 from ratfit._parse.functions import RESERVED as RESERVED
 from ratfit._parse.limits import MAX_DEPTH as MAX_DEPTH

@@ -33,6 +33,11 @@ def quote(piece: str) -> str:
     return shown if len(shown) <= 40 else f"{shown[:36]}...{shown[0]}"
 
 
+def shortened(text: str, most: int = 200) -> str:
+    """A text, or its beginning where it is longer than anybody reads within a sentence."""
+    return text if len(text) <= most else f"{text[: most - 4]} ..."
+
+
 @contextmanager
 def placed(start: int, end: int) -> Iterator[None]:
     try:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
 
 import sympy as sp
 
 from ratfit._condition import Limit
 from ratfit._field import Field, is_zero, ranks_agree
+from ratfit._generators import far_turns
 from ratfit._rows import limit_rows, rows
 from ratfit._solver.solution import Solution, Undecided
 from ratfit._system import System, columns, completed
@@ -41,16 +43,30 @@ def null_space(system: System) -> list[list[sp.Expr]]:
 
 
 def kernel(matrix: list[list[sp.Expr]], width: int) -> list[list[sp.Expr]]:
-    """A basis of the vectors that every row sends to zero, its symbols taken for independent."""
+    """A basis of the vectors that every row sends to zero, its symbols taken for independent.
+
+    Sines and cosines of far turns too, where the rank is the same for it: the answer is then short to write.
+    """
     matrix = [_without_content(row) for row in matrix]
-    field = Field([e for row in matrix for e in row])
-    basis = field.null_space([[field.encode(e) for e in row] for row in matrix], width)
-    rank = width - len(basis)
+    apart = far_turns([e for row in matrix for e in row])
+    vectors = _null_vectors(matrix, width, apart) if apart else []
+    if vectors and ranks_agree(matrix, width - len(vectors)) and ranks_agree(vectors, len(vectors)):
+        return vectors
+    vectors = _null_vectors(matrix, width)
+    rank = width - len(vectors)
     if not ranks_agree(matrix, rank):
         raise Undecided(
             f"the equations have rank {rank} exactly but not numerically: some constants of the conditions are related "
             "in a way that is not known here; state their values with equals"
         )
+    return vectors
+
+
+def _null_vectors(
+    matrix: list[list[sp.Expr]], width: int, apart: AbstractSet[sp.Expr] = frozenset()
+) -> list[list[sp.Expr]]:
+    field = Field([e for row in matrix for e in row], apart)
+    basis = field.null_space([[field.encode(e) for e in row] for row in matrix], width)
     return [[field.decode(e) for e in v] for v in basis]
 
 

@@ -10,6 +10,7 @@ import sympy as sp
 from ratfit._condition import describe
 from ratfit._field import is_zero
 from ratfit._fit import Checked, Fit
+from ratfit._parse import shortened
 from ratfit._problem import Problem
 from ratfit._problem_text import form_table
 from ratfit._solver import Table
@@ -40,7 +41,11 @@ def fit_text(fit: Fit, card: Card | None = None, *, unicode: bool = True) -> str
     if fit.conditions:
         lines += ["", "  conditions", *(f"    {_condition_line(c, unicode)}" for c in fit.conditions)]
     if fit.rejected:
-        lines += ["", "  rejected", *(f"    {c.expression}\n      {c.reason}" for c in fit.rejected)]
+        lines += [
+            "",
+            "  rejected",
+            *(f"    {shortened(str(c.expression), 400)}\n      {c.reason}" for c in fit.rejected),
+        ]
     if fit.reasons and not fit.candidates:
         lines += ["", "  why", *(f"    {reason}" for reason in fit.reasons)]
     if fit.expression is not None:

@@ -1,0 +1,51 @@
+"""The error strip: what the paper did not show."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from paper_figures.style import percent
+from ratfit.plot.error import draw_error_curve
+from ratfit.plot.style import SERIES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from paper_figures.curves import Curve
+
+
+def draw_strip(axes: Axes, curves: Sequence[Curve], title: str, over: Sequence[NDArray] | None = None) -> None:
+    """The errors of several curves, the worst point of each marked; its value stands above the axes, clear of them all.
+
+    Arguments: `curves`, at most as many as there are SERIES, which gives them their looks; `title`, what differs from
+    what; `over`, the places along the axis, where they are not the curves' own.
+    """
+    along = over or [curve.places for curve in curves]
+    for curve, places, (colour, dashes) in zip(curves, along, SERIES, strict=False):
+        worst = draw_error_curve(axes, places, curve.errors, colour=colour, dashes=dashes)
+        line = axes.lines[-2]  # the last is the mark of the worst point
+        line.set_label(percent(worst.error))
+    _restyle(axes)
+    axes.set_title(title, loc="left")
+    axes.legend(
+        loc="lower right",
+        bbox_to_anchor=(1, 1),
+        ncols=len(curves),
+        borderaxespad=0,
+        borderpad=0.2,
+        handlelength=2.2,
+        handletextpad=0.4,
+        columnspacing=0.9,
+    )
+
+
+def _restyle(axes: Axes) -> None:
+    """Lines and marks as thin as the figure's others."""
+    import matplotlib
+
+    for line in axes.lines:
+        line.set_markersize(matplotlib.rcParams["lines.markersize"])
+        if line.get_linestyle() != "None" and len(line.get_xdata()) > 2:
+            line.set_linewidth(matplotlib.rcParams["lines.linewidth"])

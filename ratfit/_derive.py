@@ -14,7 +14,7 @@ from ratfit._diagnosis import advice, contradiction, explained, remarks
 from ratfit._field import Related, is_zero
 from ratfit._fit import Candidate, Fit
 from ratfit._generators import DIGITS
-from ratfit._parse import RatfitError, shortened
+from ratfit._parse import RatfitError, nearest, shortened
 from ratfit._problem import Problem
 from ratfit._solver import Solution, Undecided, pick
 from ratfit._system import System, equations, polynomial_equations
@@ -186,11 +186,7 @@ def _check_choice(fit: Fit, system: System) -> None:
     ranges = {s.name: r for s, r in fit.free.items()}
     for name, value in fit.problem.choice.items():
         if name not in ranges:
-            free = ", ".join(ranges) or "nothing"
-            what = (
-                "is a parameter, not free" if name in {p.name for p in fit.problem.parameters} else "is not free here"
-            )
-            raise RatfitError(f"choice {name}: it {what} (free: {free}); leave it out")
+            raise RatfitError(f"choice {name}: {_not_free(name, list(ranges), fit.problem)}")
         low, high = ranges[name]
         if value.is_number and not low < value < high:
             raise RatfitError(f"choice {name} = {value}: the conditions need {low} < {name} < {high}")
@@ -199,3 +195,11 @@ def _check_choice(fit: Fit, system: System) -> None:
         if chosen.reason:
             choice = ", ".join(f"{s} = {v}" for s, v in fit.choice.items())
             raise RatfitError(f"choice {choice}: {chosen.reason}; choose another value")
+
+
+def _not_free(name: str, free: list[str], problem: Problem) -> str:
+    parameters = [p.name for p in problem.parameters]
+    if name in parameters:
+        return f"it is a parameter, not free (free: {', '.join(free) or 'nothing'}); leave it out"
+    there = f"free: {', '.join(free) or 'nothing'}; parameters: {', '.join(parameters) or 'none'}"
+    return f"it is not free here, and no parameter ({there}){nearest(name, [*free, *parameters]) or '; leave it out'}"

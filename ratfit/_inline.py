@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ratfit._parse import RESERVED, RatfitError
+from ratfit._parse import RESERVED, RatfitError, nearest
 from ratfit._problem import Problem
 from ratfit._problem_file import problem_of
 from ratfit._target import Target
@@ -160,12 +160,18 @@ def _parameter(text: str) -> tuple[str, list[str]]:
     return name, [low.strip(), high.strip()]
 
 
-def settings_of(texts: Sequence[str]) -> dict[str, str]:
-    """Names and values from --set options, as in n=6."""
+def settings_of(texts: Sequence[str], *words: str) -> dict[str, str]:
+    """Names and values from --set options, as in n=6; `words` may stand in place of a number.
+
+    **Fails** with `RatfitError` for another word, and for a name that is set twice.
+    """
     found: dict[str, str] = {}
     for text in texts:
         name, value = _pair(text, "--set", "n=6")
         if name in found:
             raise RatfitError(f"--set {text}: {name} is set twice; leave one out")
+        if value.isidentifier() and value not in (*RESERVED, *words):
+            other = f" (a parameter's value may also be {' or '.join(words)})" if words else ""
+            raise RatfitError(f"--set {text}: a number is needed, as in {name}=1/3{other}{nearest(value, words)}")
         found[name] = value
     return found

@@ -138,7 +138,7 @@ def _values(problem: Any, asked: Mapping[str, Value], given: Mapping[sp.Symbol, 
         if name not in symbols:
             raise RatfitError(f"no parameter {name!r}, there is: {known}{nearest(name, symbols)}")
         if not (isinstance(value, numbers.Real) or (isinstance(value, sp.Expr) and value.is_extended_real)):
-            raise RatfitError(f"{name} = {value!r}: a number is needed")
+            raise RatfitError(f"{name} = {value!r}: a number is needed, or {RANDOM!r}{nearest(str(value), [RANDOM])}")
     values = {symbols[name]: float(value) for name, value in asked.items()}
     for symbol, expression in given.items():
         # A reference may write one of its values in terms of others, its reflectance f in terms of its index n.

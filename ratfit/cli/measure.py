@@ -79,10 +79,17 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
     On several machines, K = 0 and 1:
     ratfit bench eq12 --samples 1e10 --coordinator 10.0.0.1:9876 --processes 2 --process K
     """
+    from ratfit._setting import RANDOM
+
     found, shown = read_problem(problem, degree, options)
-    values = settings_of(settings)
+    values = settings_of(settings, RANDOM)
     names = [p.name for p in found.parameters]
-    found = found.with_choice({n: v for n, v in values.items() if n not in names})
+    choice = {n: v for n, v in values.items() if n not in names}
+    for name in (n for n, v in choice.items() if v == RANDOM):
+        raise RatfitError(
+            f"--set {name}=random: a parameter alone is drawn at random, there is: {', '.join(names) or 'none'}"
+        )
+    found = found.with_choice(choice)
     old = _old_rows(options["against"])
     _check_measuring(options)
     fit = derived(found, options)
@@ -264,7 +271,7 @@ def report(files: tuple[str, ...], out: str) -> int:
 
 @click.command(short_help="The 1994 paper, derived and measured.")
 @click.option("--samples", type=Number(), default=1_000_000, show_default=True, metavar="N", help="Number of samples.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the samples.")
+@click.option("--seed", type=Number(), default=0, show_default=True, help="Seed of the samples.")
 @click.option(
     "--out",
     type=click.Path(),

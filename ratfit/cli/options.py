@@ -34,6 +34,26 @@ def together(*options: Option) -> Option:
     return decorate
 
 
+class Number(click.ParamType):
+    """A whole number, which may be written as 1e9 or 1_000_000."""
+
+    name = "number"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int:
+        """The number; a usage error for a fraction and for what is no number."""
+        if isinstance(value, int):
+            return value
+        written = re.fullmatch(r"([+-]?[0-9_]+)(\.[0-9]+)?(?:e([0-9]{1,2}))?", value.lower())
+        try:
+            whole, part, power = written.groups() if written and len(value) < 30 else ("", "", "")
+            number = Fraction(whole + (part or "")) * 10 ** int(power or 0)
+        except ValueError:
+            number = Fraction(1, 2)
+        if number.denominator != 1:
+            self.fail(f"{value} is not a whole number, as 1000000 or 1e9 is", parameter, context)
+        return int(number)
+
+
 # Words may begin with a minus: what is no option of ours stays among the words and is looked at in `_one_word`.
 WORDS: dict[str, Any] = {"ignore_unknown_options": True}
 
@@ -71,7 +91,7 @@ problem_options = together(
     click.option(
         "--timeout", type=float, default=60.0, show_default=True, metavar="SECONDS", help="Give up after that."
     ),
-    click.option("--seed", type=int, default=0, show_default=True, help="Seed of random samples and starts."),
+    click.option("--seed", type=Number(), default=0, show_default=True, help="Seed of random samples and starts."),
     click.option("--out", type=click.Path(), metavar="FILE", help="Write the result there; bench appends its rows."),
 )
 
@@ -137,23 +157,3 @@ def write(text: str, out: str | None) -> None:
     from ratfit._record import write_text
 
     write_text(Path(out), text + "\n")
-
-
-class Number(click.ParamType):
-    """A whole number, which may be written as 1e9 or 1_000_000."""
-
-    name = "number"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int:
-        """The number; a usage error for a fraction and for what is no number."""
-        if isinstance(value, int):
-            return value
-        written = re.fullmatch(r"([+-]?[0-9_]+)(\.[0-9]+)?(?:e([0-9]{1,2}))?", value.lower())
-        try:
-            whole, part, power = written.groups() if written and len(value) < 30 else ("", "", "")
-            number = Fraction(whole + (part or "")) * 10 ** int(power or 0)
-        except ValueError:
-            number = Fraction(1, 2)
-        if number.denominator != 1:
-            self.fail(f"{value} is not a whole number, as 1000000 or 1e9 is", parameter, context)
-        return int(number)

@@ -150,6 +150,19 @@ class Fit:
         function = lower(formula, [self.problem.variable, *symbols], backend)
         return function(at, *(values[s.name] for s in symbols))
 
+    def plot(
+        self,
+        axes: Any = None,
+        *,
+        parameters: Mapping[str, Any] | None = None,
+        reference: str | None = None,
+        error: Any = "peak",
+    ) -> Any:
+        """Draws the exact function, the fit, its conditions and its error; see `ratfit.plot.plot_fit`."""
+        from ratfit.plot import plot_fit
+
+        return plot_fit(self, axes, parameters=parameters, reference=reference, error=error)
+
     def _check_interpolated(self, values: Mapping[str, float]) -> None:
         table = self.candidates[0].table if self.candidates else None
         for parameter in table.parameters if table is not None else ():

@@ -51,7 +51,9 @@ def draw_point(axes: Axes, place: float, height: float, marker: Marker) -> Any:
     return dot
 
 
-def draw_tangent(axes: Axes, window: Window, point: tuple[float, float], slope: float, room: float) -> Any:
+def draw_tangent(
+    axes: Axes, window: Window, point: tuple[float, float], slope: float, room: float, colour: str = ORANGE
+) -> Any:
     """A short tangent, of the same length on paper everywhere, that reaches at most `room` to each side."""
     place, height = point
     across, up = window.right - window.left, window.top - window.bottom
@@ -59,7 +61,7 @@ def draw_tangent(axes: Axes, window: Window, point: tuple[float, float], slope: 
     (line,) = axes.plot(
         (place - half, place + half),
         (height - slope * half, height + slope * half),
-        color=ORANGE,
+        color=colour,
         linewidth=3.2,
         solid_capstyle="round",
         zorder=1.5,
@@ -73,8 +75,8 @@ def room_between(places: Iterable[float], width: float) -> float:
     return 0.35 * min((b - a for a, b in pairwise(ordered)), default=width)
 
 
-def draw_asymptote(axes: Axes, places: Sequence[float], heights: Sequence[float]) -> Any:
-    (line,) = axes.plot(places, heights, "--", color=GREEN, linewidth=1.2, zorder=1)
+def draw_asymptote(axes: Axes, places: Sequence[float], heights: Sequence[float], colour: str = GREEN) -> Any:
+    (line,) = axes.plot(places, heights, "--", color=colour, linewidth=1.2, zorder=1)
     return line
 
 

@@ -92,9 +92,26 @@ def plain(text: str) -> str:
 
 def mathematics(expression: sp.Expr) -> str | None:
     """An expression as matplotlib sets mathematics, without its dollars; None for what it cannot set."""
+    return _settable(sp.latex(rounded(expression)).replace(r"\frac", r"\dfrac"))
+
+
+def on_a_line(expression: sp.Expr) -> str | None:
+    """The same with a fraction written as pi/2 is, for a line of text: set upright it would need smaller type."""
+    above, below = sp.fraction(rounded(expression))
+    if below == 1:
+        return mathematics(expression)
+    bracketed = [_bracketed(above, above.is_Add), _bracketed(below, below.is_Add or below.is_Mul)]
+    return _settable("/".join(bracketed).replace(r"\frac", r"\dfrac"))
+
+
+def _bracketed(expression: sp.Expr, is_needed: bool) -> str:
+    written = sp.latex(expression)
+    return rf"\left({written}\right)" if is_needed else written
+
+
+def _settable(written: str) -> str | None:
     from matplotlib.mathtext import MathTextParser
 
-    written = sp.latex(rounded(expression)).replace(r"\frac", r"\dfrac")
     try:
         MathTextParser("path").parse(f"${written}$")
     except ValueError:  # cases, and other environments of LaTeX

@@ -39,15 +39,16 @@ def broken(places: Sequence[float], heights: Sequence[float], poles: Sequence[fl
         math.nan if any(abs(p - pole) < step for pole in poles) else h for p, h in zip(places, heights, strict=True)
     ]
     finite = [h for h in found if math.isfinite(h)]
-    span = (max(finite) - min(finite)) if finite else 0.0
+    height = (max(finite) - min(finite)) if finite else 0.0
     for k in range(2, len(found) - 1):
         leap, before, after = (abs(found[j] - found[j - 1]) for j in (k, k - 1, k + 1))
-        if span and leap > 0.02 * span and (leap > 20 * max(before, after) or _changes_at_a_pole(heights, k)):
+        if height and leap > 0.02 * height and (leap > 20 * max(before, after) or is_pole(heights, k)):
             found[k] = math.nan
     return found
 
 
-def _changes_at_a_pole(heights: Sequence[float], k: int) -> bool:
+def is_pole(heights: Sequence[float], k: int) -> bool:
+    """Whether the sign changes before place k at a pole: the curve grows towards it from both sides."""
     outer, left, right, far = heights[k - 2 : k + 2]
     return left * right < 0 and abs(left) > 1.5 * abs(outer) and abs(right) > 1.5 * abs(far)
 

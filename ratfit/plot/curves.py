@@ -1,0 +1,241 @@
+"""What a picture of a fit is drawn from: exact function, fit and error as arrays, at settings of the parameters."""
+
+from __future__ import annotations
+
+import math
+import numbers
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import sympy as sp
+
+from ratfit._condition import AbstractPointCondition, Equation, Limit
+from ratfit._fit import Candidate, Fit
+from ratfit._lower import lower
+from ratfit._parse import RatfitError
+from ratfit._problem import Problem
+from ratfit._setting import Setting, setting
+from ratfit._target import Target, sample_values
+from ratfit.gallery import card, is_card
+from ratfit.plot.style import SERIES, significant
+from ratfit.plot.view import CUTS, broken, cut, is_pole
+
+Parameters = Mapping[str, float | Sequence[float]]
+
+PLACES = 2000
+"""Points of a curve: the middles of so many equal parts, more of them towards the ends, and the ends."""
+
+NEAREST = 1e-5
+"""How near to an end the places go, in parts of the range: nearer by, what is 0/0 there loses its digits."""
+
+MOST = 2 * len(SERIES)
+"""Curves of a family that an eye can still tell apart."""
+
+FAR = 1e8
+"""Where a function with a limit has come near it."""
+
+
+@dataclass(frozen=True)
+class FitCurves:
+    """Exact function and fit at one setting of the parameters, nan where there is none; heights are as they are.
+
+    `label` says what the setting is ("m = 0.1"); `exact` is None where nothing is known to compare with.
+    """
+
+    setting: Setting
+    label: str
+    places: Any
+    exact: Any
+    fit: Any
+
+    @property
+    def known(self) -> Any:
+        """The exact function, or the fit where there is none."""
+        return self.fit if self.exact is None else self.exact
+
+    @property
+    def peak(self) -> float:
+        """The largest size of what is known, as far as it is drawn."""
+        import numpy as np
+
+        return float(np.nanmax(abs(self.known), initial=0.0))
+
+    @property
+    def has_pole(self) -> bool:
+        """Whether what is known is infinite somewhere: it then has no peak."""
+        import numpy as np
+
+        formula = self.setting.formula if self.exact is None else self.setting.exact
+        raw = _raw(self.places, formula, self.setting)
+        known = raw[np.isfinite(raw)].tolist()
+        return bool(np.isinf(raw).any()) or any(is_pole(known, k) for k in range(2, len(known) - 1))
+
+    def errors(self, definition: str) -> Any:
+        """The signed errors by one of ERRORS."""
+        import numpy as np
+
+        difference = self.fit - self.exact
+        with np.errstate(all="ignore"):
+            found = {
+                "absolute": difference,
+                "peak": difference / self.peak,
+                "relative": difference / abs(self.exact),
+            }[definition]
+        return np.where(np.isfinite(found), found, math.nan)
+
+    def number(self, expression: sp.Expr) -> float:
+        """An expression of the parameters at this setting; nan where it is no number."""
+        values = self.setting.values
+        return float(lower(expression, tuple(values))(*values.values()))
+
+    def drawn(self, formula: sp.Expr, places: Any) -> Any:
+        """Another formula of the same problem at this setting."""
+        return heights_at(places, formula, self.setting)
+
+
+PLACED = (AbstractPointCondition, Equation, Limit)
+"""Conditions that hold at a place."""
+
+ERRORS: Mapping[str, str] = {
+    "peak": "error / peak",
+    "relative": "error / |exact|",
+    "absolute": "error",
+}
+"""What an error strip may show, and how its axis is named."""
+
+
+def curves_of(fit: Fit, parameters: Parameters | None, reference: str | None) -> tuple[FitCurves, ...]:
+    """The curves at every setting that `parameters` name.
+
+    A parameter with a list of values makes a family; one that is left out has the middle of its range, and where all
+    are left out a gallery problem has its card's settings. Raises RatfitError where there is no fit, for a coefficient
+    that is still free, an unknown name and a value outside its range.
+    """
+    fit.chosen  # noqa: B018  # says why there is no fit, before anything else is looked at
+    has_exact = reference is not None or fit.problem.target is not None
+    # A fit without an exact function is held against itself: its parameters are checked as those of any other.
+    compared = fit if has_exact else replace(fit, problem=_with_target(fit))
+    asked = _settings(fit.problem, parameters, reference)
+    places = [setting(compared, values, reference, _within(fit.problem, values)) for values in asked]
+    low, high = _seen(fit, places)
+    varying = [name for name in (asked[0] if asked else {}) if len({values.get(name) for values in asked}) > 1]
+    return tuple(
+        _drawn(place, (place.low if low is None else low, place.high if high is None else high), varying, has_exact)
+        for place in places
+    )
+
+
+def other_formulas(fit: Fit) -> list[tuple[Candidate, sp.Expr]]:
+    """The further candidates and the rejected ones, each with its formula on the whole domain, where it is a curve."""
+    found = []
+    for candidate in (*fit.candidates[1:], *fit.rejected):
+        formula = replace(fit, candidates=(candidate,)).formula
+        symbols = formula.free_symbols - {fit.problem.variable, *fit.problem.parameters}
+        if not symbols and not formula.has(sp.I, sp.nan, sp.zoo, sp.oo):
+            found.append((candidate, formula))
+    return found
+
+
+def heights_at(places: Any, formula: sp.Expr, at: Setting) -> Any:
+    """A formula at places, with a gap at every pole and jump."""
+    import numpy as np
+
+    raw = _raw(places, formula, at)
+    return np.array(broken(places.tolist(), np.where(np.isfinite(raw), raw, math.nan).tolist()))
+
+
+def _raw(places: Any, formula: sp.Expr, at: Setting) -> Any:
+    return lower(formula, (at.variable, *at.values))(places, *at.values.values())
+
+
+def _with_target(fit: Fit) -> Problem:
+    problem = fit.problem
+    return replace(problem, target=Target(fit.formula, problem.variable, problem.domain))
+
+
+def _drawn(place: Setting, ends: tuple[float, float], varying: Sequence[str], has_exact: bool) -> FitCurves:
+    import numpy as np
+
+    low, high = ends
+    close = np.geomspace(NEAREST, 0.5 / PLACES, 40, endpoint=False)
+    shares = np.concatenate([[0], close, (np.arange(PLACES) + 0.5) / PLACES, 1 - close[::-1], [1]])
+    places = low + (high - low) * shares
+    label = ", ".join(f"{name} = {significant(place.parameters[name], 4)}" for name in varying)
+    exact = heights_at(places, place.exact, place) if has_exact else None
+    return FitCurves(place, label, places, exact, heights_at(places, place.formula, place))
+
+
+def _settings(problem: Problem, parameters: Parameters | None, reference: str | None) -> list[dict[str, Any]]:
+    """The values of the parameters, one mapping a curve."""
+    given = {s.name for each in problem.references if each.name == reference for s in each.parameters}
+    if parameters is None and (settings := _settings_of_card(problem)):
+        return [{name: float(value) for name, value in each.items() if name not in given} for each in settings]
+    asked = dict(parameters or {})
+    families = [name for name, value in asked.items() if not isinstance(value, (numbers.Real, sp.Expr, str))]
+    if len(families) > 1:
+        raise RatfitError(f"a picture has one family of curves: give {' or '.join(families)} one value")
+    for parameter in problem.parameters:
+        if parameter.name not in given:
+            asked.setdefault(parameter.name, float(sample_values({parameter}, ("1/2",))[0][parameter]))
+    values = list(asked[families[0]]) if families else []  # type: ignore[arg-type]
+    if families and not 1 <= len(values) <= MOST:
+        raise RatfitError(f"{families[0]} has {len(values)} values: a picture holds 1 to {MOST} curves")
+    return [{**asked, families[0]: value} for value in values] if families else [asked]
+
+
+def _settings_of_card(problem: Problem) -> tuple[Mapping[str, sp.Expr], ...]:
+    """The settings that a gallery problem is published with; none for other problems, whatever they are called."""
+    if not is_card(problem.name):
+        return ()
+    known = card(problem.name)
+    return known.settings if replace(known.problem, choice=problem.choice) == problem else ()
+
+
+def _within(problem: Problem, values: Mapping[str, Any]) -> tuple[float, float] | None:
+    """A finite piece of an infinite domain, for what needs one before it is known where to cut."""
+    low, high = problem.domain
+    if not (low.is_infinite or high.is_infinite):
+        return None
+    if low.is_infinite and high.is_infinite:
+        return 0.0, 1.0
+    known = {p: sp.Float(values[p.name]) for p in problem.parameters if p.name in values}
+    end = float((high if low.is_infinite else low).xreplace(known))
+    return (end - 1, end) if low.is_infinite else (end, end + 1)
+
+
+def _seen(fit: Fit, places: Sequence[Setting]) -> tuple[float | None, float | None]:
+    """Where infinite ends are cut, the same for all settings; None for an end that is finite."""
+    low, high = fit.problem.domain
+    if low.is_infinite and high.is_infinite:
+        far = max(_cut(fit, place, side, 0.0) for place in places for side in (1, -1))
+        return -far, far
+    if high.is_infinite:
+        return None, max(place.low + _cut(fit, place, 1, place.low) for place in places)
+    if low.is_infinite:
+        return min(place.high - _cut(fit, place, -1, place.high) for place in places), None
+    return None, None
+
+
+def _cut(fit: Fit, place: Setting, side: int, start: float) -> float:
+    values = tuple(place.values.values())
+    exact = lower(place.exact, (place.variable, *place.values))
+    marked = [c.condition.at for c in fit.conditions if isinstance(c.condition, PLACED)]
+    known = [lower(at, tuple(place.values))(*values) for at in marked if not at.is_infinite]
+    reach = 1.3 * max((abs(p - start) for p in (*known, _worst(place, side, start)) if math.isfinite(p)), default=0.0)
+    height: Callable[[float], float] = lambda there: float(exact(there, *values))  # noqa: E731
+    limit = height(start + side * FAR)
+    size = max(abs(h) for k in range(11) if math.isfinite(h := height(start + side * k)))
+    settles = abs(height(start + side * FAR / 100) - limit) < 1e-3 * size  # not so where either is nan
+    return cut(height, start, side, limit if settles else None, reach)
+
+
+def _worst(place: Setting, side: int, start: float) -> float:
+    """The place of the largest error on the way to infinity, so that it is seen; `start` where the error only grows."""
+    import numpy as np
+
+    there = start + side * np.geomspace(1e-2, CUTS[-1], 2000)
+    values = tuple(place.values.values())
+    exact, fit = (lower(e, (place.variable, *place.values))(there, *values) for e in (place.exact, place.formula))
+    off = np.nan_to_num(abs(fit - exact), nan=0.0, posinf=0.0)
+    return float(there[off.argmax()]) if off.argmax() < len(off) - 1 else start

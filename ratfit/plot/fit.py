@@ -1,0 +1,246 @@
+"""The picture of a fit: exact function and fit, its kernel conditions marked, and the error beneath."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+from ratfit._fit import Fit
+from ratfit._parse import RatfitError
+from ratfit._problem import Problem
+from ratfit.plot.conditions import Page, draw_conditions, letter
+from ratfit.plot.curves import ERRORS, FitCurves, Parameters, curves_of, other_formulas
+from ratfit.plot.error import PERCENT, PLAIN, Worst, draw_error, draw_error_curve, worst_text
+from ratfit.plot.marks import Window
+from ratfit.plot.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    PURPLE,
+    RED,
+    SERIES,
+    dress,
+    legend_below,
+    mathematics,
+    on_a_line,
+    plain,
+    settings,
+    shortened,
+    significant,
+    text_width,
+)
+from ratfit.plot.view import span
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Error = Literal["relative", "absolute", "peak"]
+
+MANY_TIMES = 8
+"""Where the peaks of a family differ more than this, each curve is drawn in parts of its own peak."""
+
+OTHERS = 3
+"""Other candidates that are drawn at most."""
+
+_WIDE: dict[str, Any] = {"linewidth": 5.5, "alpha": 0.25, "zorder": 2}
+
+TITLE = 420
+"""Points that a title may take on one line."""
+
+
+def plot_fit(
+    fit: Fit,
+    axes: Axes | Sequence[Axes] | None = None,
+    *,
+    parameters: Parameters | None = None,
+    reference: str | None = None,
+    error: Error = "peak",
+) -> tuple[Axes, Axes | None]:
+    """Draws a fit over the domain: the exact function wide and pale, the fit thin, the conditions marked, the error.
+
+    **Arguments:**
+
+    - `axes`: matplotlib's, a pair for curves and error, or one for the curves alone; left out, a new figure. The legend
+      stands below them: a constrained layout makes room for it.
+    - `parameters`: the value of each by name, or for one of them a list of values, a family of curves. What is left out
+      has the middle of its range, which the picture says; where all are, a gallery problem has its card's settings.
+    - `reference`: the name of one of the problem's references, which is then the exact function.
+    - `error`: the error strip shows `"peak"`, the error in parts of the largest |exact| that is drawn, `"relative"`, in
+      parts of |exact|, or the `"absolute"` error. An exact function with a pole has no peak: its strip is relative.
+
+    **Returns** the axes of the curves and of the error, the latter None where there is none. Nothing is shown;
+    `axes.figure.savefig(...)` writes it.
+
+    **Fails** with `RatfitError` where there is no fit, a coefficient is still free, or for a parameter or reference
+    that the problem does not have.
+    """
+    if error not in ERRORS:
+        raise RatfitError(f"error={error!r}: a picture shows {', '.join(ERRORS)}")
+    curves = curves_of(fit, parameters, reference)
+    definition = "relative" if error == "peak" and any(c.has_pole for c in curves) else error
+    with settings(axes is None):
+        above, below = _axes(axes, has_strip=curves[0].exact is not None)
+        notes = _draw_strip(below, fit, curves, definition) if below is not None else []
+        handles = _draw_curves(above, fit, curves, reference, notes)
+        lowest = above if below is None else below
+        lowest.set_xlabel(plain(_x_label(fit, curves, parameters, reference)))
+        legend_below(lowest, handles)
+    return above, below
+
+
+def _axes(given: Axes | Sequence[Axes] | None, has_strip: bool) -> tuple[Axes, Axes | None]:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    if given is None and has_strip:
+        above, below = Figure(figsize=(6.6, 5.8), layout="constrained").subplots(2, sharex=True, height_ratios=(5, 2))
+        return above, below
+    if given is None:
+        return Figure(figsize=(6.6, 4.6), layout="constrained").subplots(), None
+    if isinstance(given, Axes):
+        return given, None
+    if len(given) != 2:
+        raise RatfitError(f"axes: give one, or a pair for curves and error, not {len(given)}")
+    if not has_strip:
+        given[1].set_axis_off()  # there is nothing exact, and so no error to draw there
+    return given[0], given[1] if has_strip else None
+
+
+def _draw_curves(
+    axes: Axes, fit: Fit, curves: Sequence[FitCurves], reference: str | None, notes: Sequence[str]
+) -> list[Any]:
+    """The curves with their conditions; returns the entries of the legend."""
+    is_scaled = _is_scaled(curves)
+    scales = [1 / curve.peak if is_scaled else 1.0 for curve in curves]
+    window = _window(curves, scales)
+    axes.set_xlim(window.left, window.right)
+    axes.set_ylim(window.bottom, window.top)
+    handles = _draw_lines(axes, curves, scales, _exact_text(fit.problem, reference), notes)
+    others = _draw_others(axes, fit, curves[0]) if len(curves) == 1 else []
+    handles += [*others, *draw_conditions(Page(axes, window, curves, scales), fit)]
+    axes.set_xlim(window.left, window.right)
+    axes.set_ylim(window.bottom, window.top)
+    axes.set_ylabel(
+        plain(f"{letter(fit.problem)}({fit.problem.variable})" + (", in parts of its peak" if is_scaled else ""))
+    )
+    axes.set_title(_title(fit), pad=10)
+    dress(axes)
+    return handles
+
+
+def _is_scaled(curves: Sequence[FitCurves]) -> bool:
+    peaks = [curve.peak for curve in curves]
+    return min(peaks) > 0 and max(peaks) > MANY_TIMES * min(peaks) and not any(c.has_pole for c in curves)
+
+
+def _window(curves: Sequence[FitCurves], scales: Sequence[float]) -> Window:
+    """The domain with a margin, and the heights of what is known; a fit that leaves them by far is cut."""
+    low, high = min(c.places[0] for c in curves), max(c.places[-1] for c in curves)
+    heights = [h * scale for curve, scale in zip(curves, scales, strict=True) for h in curve.known.tolist()]
+    bottom, top = span(heights, [], any(curve.has_pole for curve in curves))
+    fits = [h * scale for curve, scale in zip(curves, scales, strict=True) for h in curve.fit.tolist()]
+    reach = 0.25 * (top - bottom)
+    finite = [h for h in fits if math.isfinite(h)] or [bottom]
+    bottom, top = max(min(bottom, min(finite)), bottom - reach), min(max(top, max(finite)), top + reach)
+    margin = 0.03 * (high - low)
+    return Window(low - margin, high + margin, bottom, top)
+
+
+def _draw_lines(
+    axes: Axes, curves: Sequence[FitCurves], scales: Sequence[float], exact: str, notes: Sequence[str]
+) -> list[Any]:
+    from matplotlib.lines import Line2D
+
+    is_single = len(curves) == 1
+    fits = []
+    for place, (curve, scale) in enumerate(zip(curves, scales, strict=True)):
+        colour, dashes = (BLUE, "-") if is_single else _look(place)
+        if curve.exact is not None:
+            pale = BLACK if is_single else colour
+            axes.plot(
+                curve.places, curve.exact * scale, color=pale, linewidth=5.5, alpha=0.25, zorder=2, label="_exact"
+            )
+        note = f": {notes[place]}" if place < len(notes) else ""
+        (line,) = axes.plot(curve.places, curve.fit * scale, color=colour, linestyle=dashes, linewidth=1.6, zorder=3)
+        line.set_label(plain("fit" if is_single else f"{curve.label}{note}"))
+        fits.append(line)
+    if curves[0].exact is None:
+        return [*fits, Line2D([], [], linestyle="none", label=plain(exact))]
+    return [Line2D([], [], color=BLACK, label=exact, **_WIDE), *fits]
+
+
+def _look(place: int) -> tuple[str, Any]:
+    """Colour and dashes of a curve of a family; beyond the sixth the dashes come in another order."""
+    count = len(SERIES)
+    return SERIES[place % count][0], SERIES[(place + place // count) % count][1]
+
+
+def _draw_others(axes: Axes, fit: Fit, curve: FitCurves) -> list[Any]:
+    """Other candidates thin, rejected ones dotted, each with why."""
+    handles = []
+    for place, (candidate, formula) in enumerate(other_formulas(fit)[:OTHERS]):
+        heights = curve.drawn(formula, curve.places)
+        colour, dashes = ((RED, PURPLE, GREEN)[place], ":") if candidate.reason else (GREY, ("-", "--", "-.")[place])
+        (line,) = axes.plot(curve.places, heights, color=colour, linestyle=dashes, linewidth=1.2, zorder=2.5)
+        what = shortened(str(candidate.expression), 25)
+        why = f"rejected: {what}: {candidate.reason}" if candidate.reason else f"another answer: {what}"
+        line.set_label(plain(shortened(why, 70)))
+        handles.append(line)
+    return handles
+
+
+def _exact_text(problem: Problem, reference: str | None) -> str:
+    if reference is not None:
+        source = next((r.source for r in problem.references if r.name == reference), "")
+        return plain(f"exact: {reference}" + (f" ({source})" if source else ""))
+    if problem.target is None:
+        names = ", ".join(r.name for r in problem.references)
+        return "no target to compare with" + (f": draw against a reference, {names}" if names else "")
+    written = on_a_line(problem.target.expression)
+    text = f"exact: ${written}$"
+    return text if written is not None and text_width(text, 9) < TITLE / 2 else "exact"
+
+
+def _draw_strip(axes: Axes, fit: Fit, curves: Sequence[FitCurves], definition: str) -> list[str]:
+    """The errors; returns for each curve of a family what its worst is, for one is written at its point."""
+    unit, variable = PLAIN if definition == "absolute" else PERCENT, fit.problem.variable.name
+    axes.set_ylabel(ERRORS[definition])
+    dress(axes)
+    if len(curves) == 1:
+        draw_error(axes, curves[0].places, curves[0].errors(definition), variable=plain(variable), unit=unit)
+        return []
+    worst: list[Worst] = []
+    for place, curve in enumerate(curves):
+        colour, dashes = _look(place)
+        found = draw_error_curve(axes, curve.places, curve.errors(definition), colour=colour, dashes=dashes, unit=unit)
+        worst.append(found)
+    return [worst_text(each, variable=variable, unit=unit) for each in worst]
+
+
+def _title(fit: Fit) -> str:
+    """The name and the formula where both fit on a line and the formula is exact, else the name."""
+    name = plain(fit.problem.name)
+    if any(len(str(number.round(8))) > 6 for number in fit.chosen.atoms() if number.is_Float):
+        return name
+    written = mathematics(fit.chosen)
+    title = f"{name}:  ${written}$"
+    return title if written is not None and text_width(title, 11) < TITLE else name
+
+
+def _x_label(fit: Fit, curves: Sequence[FitCurves], parameters: Parameters | None, reference: str | None) -> str:
+    """The variable, where an infinite domain is cut, and the parameters that all curves share."""
+    problem = fit.problem
+    label = str(problem.variable)
+    if any(end.is_infinite for end in problem.domain):
+        low, high = (str(end).replace("oo", "∞").replace("-", "−") for end in problem.domain)
+        label += f"   (cut: the domain is [{low}, {high}])"
+    settings = [curve.setting.parameters for curve in curves]
+    shared = {name: value for name, value in settings[0].items() if len({s[name] for s in settings}) == 1}
+    said = {s.name for each in problem.references if each.name == reference for s in each.parameters}
+    values = [
+        f"{name} = {significant(value, 4)}" + ("" if name in said or name in (parameters or {}) else " (mid-range)")
+        for name, value in shared.items()
+    ]
+    return label + (f"   at {', '.join(values)}" if values else "")

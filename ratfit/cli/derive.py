@@ -17,11 +17,14 @@ from ratfit._problem_text import at_parameters, to_tables
 from ratfit._target import exact
 from ratfit.cli.options import EXPRESSION_HELP, WORDS, derived, problem_options, read_problem, write
 from ratfit.gallery import Card
+from ratfit.plot.write import picture_format, write_picture
 
 
 @click.command(short_help="Derive a fit from its kernel conditions.", context_settings=WORDS, epilog=EXPRESSION_HELP)
 @problem_options
 @click.option("--unique", is_flag=True, help="Take a family with free coefficients for a no.")
+@click.option("--plot", metavar="FILE", help="A picture of exact function, fit and error: .svg, .pdf or .png.")
+@click.option("--reference", metavar="NAME", help="The problem's reference that the picture compares with.")
 @click.option("--format", "format_", default="text", type=click.Choice(["text", "json", "latex"]), show_default=True)
 def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...], **options: Any) -> int:
     """Derive the fit of PROBLEM from its kernel conditions.
@@ -32,8 +35,13 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     ratfit derive eq15 --set n=3               another choice of the free exponent
     ratfit derive eq19 --set m=0.3             at one value of the parameter
     ratfit derive my.toml --format json
+    ratfit derive eq15 --plot gold.svg --reference gold
     ratfit derive "t**n" --parameter n=1:1000 --on 0 1 --form 1/1 --value 0 --value 1 --derivative 1
     """
+    if options["plot"]:
+        picture_format(options["plot"])
+    elif options["reference"]:
+        raise RatfitError("--reference says what a picture compares with: give --plot FILE too")
     found, shown = read_problem(problem, degree, options)
     there = _with_settings(found, settings_of(settings))
     if there.parameters != found.parameters:
@@ -41,10 +49,22 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     fit = derived(there, options)
     if options["unique"] and fit.status in ("family", "several"):
         fit = _refused(fit)
+    if options["plot"]:
+        _write_picture(fit, options["plot"], options["reference"])
     write(rendered(fit, shown, options["format_"]), options["out"])
     for line in fit.advice:
         print(f"ratfit: {line}", file=sys.stderr)
     return 0 if fit.expression is not None else 1
+
+
+def _write_picture(fit: Fit, file: str, reference: str | None) -> None:
+    if fit.expression is None:
+        print(f"ratfit: there is no fit, and so no picture in {file}", file=sys.stderr)
+        return
+    from ratfit.plot import plot_fit
+
+    curves, _ = plot_fit(fit, reference=reference)
+    write_picture(curves.figure, file)  # type: ignore[arg-type]  # a Figure of its own
 
 
 def _with_settings(problem: Problem, settings: dict[str, str]) -> Problem:

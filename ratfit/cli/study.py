@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
@@ -12,12 +11,11 @@ from ratfit._parse import RatfitError
 from ratfit._target import Target
 from ratfit.cli.options import WORDS, one_word, positive, write
 from ratfit.gallery import card, find_problem, is_known
+from ratfit.plot.write import picture_format, write_picture
 from ratfit.report.progress import waiting
 
 TARGET_HELP = """TARGET is looked up as a gallery name (`ratfit gallery`), then as a problem file (it ends in .toml or
 exists), then read as an expression that --on completes."""
-
-PICTURES = ("svg", "pdf", "png")
 
 
 @click.command(short_help="Say what is exact about a function.", context_settings=WORDS, epilog=TARGET_HELP)
@@ -42,12 +40,15 @@ def study(target: tuple[str, ...], **options: Any) -> int:
     from ratfit._study import study as study_target
     from ratfit.report.study import study_json, study_text, study_toml
 
-    picture = _picture_format(options["plot"])
+    if options["plot"]:
+        picture_format(options["plot"])
     studied, seconds = _read_target(target, options), positive(options["timeout"])
     with waiting(f"studying {studied.expression}, for at most {seconds:g} s (Ctrl-C stops)"):
         found = study_target(studied, timeout=seconds)
-    if picture:
-        _write_picture(found, options["plot"], picture)
+    if options["plot"]:
+        from ratfit.plot import plot_study
+
+        write_picture(plot_study(found).figure, options["plot"])  # type: ignore[arg-type]  # a Figure of its own
     written = {"text": study_text, "json": study_json, "toml": study_toml}[options["format_"]](found)
     write(written.rstrip("\n"), options["out"])
     return 0
@@ -66,24 +67,3 @@ def _read_target(words: tuple[str, ...], options: dict[str, Any]) -> Target:
     if not stated.given() and text.replace("-", "").replace("_", "").isalnum():
         return target_of(card(text).problem)  # a lone word that is no name: the error offers the nearest names
     return target_of_words(text, stated)
-
-
-def _picture_format(file: str | None) -> str:
-    """The format that the suffix of a picture asks for, before any work is done for it."""
-    if file is None:
-        return ""
-    suffix = Path(file).suffix.lower().removeprefix(".")
-    if suffix not in PICTURES:
-        raise RatfitError(f"--plot {file}: name the picture something.svg, something.pdf or something.png")
-    return suffix
-
-
-def _write_picture(found: Any, file: str, format_: str) -> None:
-    from io import BytesIO
-
-    from ratfit._record import write_bytes
-    from ratfit.plot import plot_study
-
-    drawn = BytesIO()
-    plot_study(found).figure.savefig(drawn, format=format_, dpi=200)  # type: ignore[union-attr]  # a Figure of its own
-    write_bytes(file, drawn.getvalue())

@@ -29,6 +29,7 @@ from ratfit.plot.style import (
     settings,
     shortened,
     significant,
+    text_depth,
     text_width,
 )
 from ratfit.plot.view import span
@@ -125,7 +126,8 @@ def _draw_curves(
     axes.set_ylabel(
         plain(f"{letter(fit.problem)}({fit.problem.variable})" + (", in parts of its peak" if is_scaled else ""))
     )
-    axes.set_title(_title(fit), pad=10)
+    title = _title(fit)
+    axes.set_title(title, pad=6 + text_depth(title, 11))
     dress(axes)
     return handles
 
@@ -143,7 +145,8 @@ def _window(curves: Sequence[FitCurves], scales: Sequence[float]) -> Window:
     fits = [h * scale for curve, scale in zip(curves, scales, strict=True) for h in curve.fit.tolist()]
     reach = 0.25 * (top - bottom)
     finite = [h for h in fits if math.isfinite(h)] or [bottom]
-    bottom, top = max(min(bottom, min(finite)), bottom - reach), min(max(top, max(finite)), top + reach)
+    room = 0.04 * (top - bottom)
+    bottom, top = max(min(bottom, min(finite) - room), bottom - reach), min(max(top, max(finite) + room), top + reach)
     margin = 0.03 * (high - low)
     return Window(low - margin, high + margin, bottom, top)
 

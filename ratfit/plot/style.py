@@ -126,10 +126,19 @@ def rounded(expression: sp.Expr) -> sp.Expr:
 
 def text_width(text: str, size: float) -> float:
     """The width in points of a text at a size in points, mathematics between dollars set as such."""
+    return _measured(text, size).width
+
+
+def text_depth(text: str, size: float) -> float:
+    """How far below its line a text reaches, in points."""
+    return _measured(text, size).depth
+
+
+def _measured(text: str, size: float) -> Any:
     from matplotlib.font_manager import FontProperties
     from matplotlib.mathtext import MathTextParser
 
-    return MathTextParser("path").parse(text, 72, FontProperties(family="DejaVu Sans", size=size)).width
+    return MathTextParser("path").parse(text, 72, FontProperties(family="DejaVu Sans", size=size))
 
 
 def significant(number: float, digits: int) -> str:

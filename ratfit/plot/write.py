@@ -28,7 +28,7 @@ def picture_format(file: str | Path) -> str:
     """The format that a picture's suffix asks for: a command asks before it does any work. RatfitError for others."""
     suffix = Path(file).suffix.lower().removeprefix(".")
     if suffix not in _UNSAID:
-        raise RatfitError(f"--plot {file}: name the picture something.svg, something.pdf or something.png")
+        raise RatfitError(f"{file}: name the picture something.svg, something.pdf or something.png")
     return suffix
 
 

@@ -12,6 +12,9 @@ from ratfit._problem import Problem
 from ratfit._problem_file import problem_of
 from ratfit._target import Target
 
+UNNAMED = "expression"
+"""The name of every problem that the words of a command state."""
+
 
 @dataclass(frozen=True)
 class Words:
@@ -46,7 +49,7 @@ def problem_of_words(target: str, words: Words) -> Problem:
     parameters = dict(_parameter(text) for text in words.parameter)
     lets = dict(_pair(text, "--let", "h=v**2") for text in words.let)
     tables: dict[str, Any] = {
-        "name": "expression",
+        "name": UNNAMED,
         "target": target,
         "variable": words.variable or _variable(target, {*parameters, *lets}),
         "domain": list(words.on),
@@ -61,7 +64,7 @@ def problem_of_words(target: str, words: Words) -> Problem:
             *(_condition("equation", text) for text in words.equation),
         ],
     }
-    return problem_of(tables, "expression")
+    return problem_of(tables, UNNAMED)
 
 
 def target_of_words(target: str, words: Words) -> Target:

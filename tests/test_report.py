@@ -15,8 +15,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+import sympy as sp
 from report_rows import HOSTILE, MACHINE, PUBLISHED, curve, full_rows, row, smith_fit
 
+from ratfit import Checked, Derivative, Equation
 from ratfit._parse import RatfitError
 from ratfit.report import document as nouns
 from ratfit.report.cost_figure import Point, cost_figure
@@ -242,6 +244,21 @@ def test_formulas_of_one_problem_are_kept_apart_and_their_peers_with_them():
     assert [section.title for section in document.sections] == ["smith", "smith (2)"]
     assert all("Alternatives" in [part.title for part in s.blocks[1:]] for s in document.sections)
     assert "0.5" in to_markdown(Document("", (), document.sections[1:]), "x")
+
+
+def test_a_problem_without_a_name_is_titled_by_its_target():
+    targets = ("sin(x)", "sin(x)", "x" * 50)
+    rows = [row("expression", fit=smith_fit() | {"name": "expression", "target": target, "expression": str(place)})
+            for place, target in enumerate(targets)]  # fmt: skip
+    assert [section.title for section in document_of(rows).sections] == ["sin(x)", "sin(x) (2)", "x" * 36 + " ..."]
+
+
+def test_a_condition_that_kind_and_place_do_not_tell_is_put_in_words():
+    equation = Checked(Equation("y' - y", 0, order=2), sp.S.Zero, True, 0.0).to_json_object()
+    assert equation["words"] == "equation -y + y' at 0 to order 2"
+    assert "words" not in Checked(Derivative(0), sp.S.One, True, 0.0).to_json_object()
+    fit = smith_fit() | {"conditions": [equation]}
+    assert "equation -y + y&#39; at 0 to order 2" in to_html(document_of([row(fit=fit)]))
 
 
 def test_a_row_that_is_there_twice_counts_once():

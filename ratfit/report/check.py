@@ -70,6 +70,12 @@ def _objects(shape: Mapping[str, Test]) -> Test:
 _CONDITION: Mapping[str, Test] = {
     "kind": _is_text, "at": _is_text, "equals": _is_text, "holds": _is_verdict, "residual": _is_number_or_none,
 }  # fmt: skip
+
+
+def _is_condition(value: Any) -> bool:
+    return _has_shape(value, _CONDITION) and _is_text(value.get("words", ""))
+
+
 _FIT: Mapping[str, Test] = {
     "name": _is_text,
     "status": _is_text,
@@ -83,7 +89,7 @@ _FIT: Mapping[str, Test] = {
     "free": _objects({"name": _is_text, "range": lambda value: _list_of(_is_text)(value) and len(value) == 2}),
     "choice": _table_of(_is_text),
     "route": _is_text,
-    "conditions": _objects(_CONDITION),
+    "conditions": _list_of(_is_condition),
     "rejected": _objects({"expression": _is_text_or_none, "reason": _is_text}),
     "cost": lambda value: value is None or _table_of(_is_number)(value),
 }

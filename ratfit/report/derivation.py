@@ -51,7 +51,7 @@ def _conditions(conditions: Sequence[dict[str, Any]]) -> Table:
     head = (Column("condition"), Column("at"), Column("equals"), Column("holds"), Column("residual", numeric=True))
     rows = tuple(
         (
-            Cell(c["kind"]),
+            Cell(c.get("words", c["kind"])),
             Cell(Code(c["at"])),
             Cell(Code(c["equals"])),
             Cell(HOLDS[c["holds"]]),

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from ratfit._error import DEFINITIONS
-from ratfit._parse import RatfitError
+from ratfit._inline import UNNAMED
+from ratfit._parse import RatfitError, shortened
 from ratfit._record import Row, merge
 from ratfit.report.check import check_row
 from ratfit.report.document import Block, Cell, Code, Column, Details, Document, Facts, Link, Paragraph, Section, Table
@@ -95,9 +96,16 @@ def _problems(rows: Sequence[Row]) -> Iterator[ProblemRows]:
         groups.setdefault(key, []).append(row)
     titles: dict[str, int] = {}
     for number, ((problem, _), group) in enumerate(groups.items(), 1):
-        titles[problem] = titles.get(problem, 0) + 1
-        again = f" ({titles[problem]})" if titles[problem] > 1 else ""
-        yield ProblemRows(number, problem + again, tuple(group))
+        title = _title(problem, group)
+        titles[title] = titles.get(title, 0) + 1
+        again = f" ({titles[title]})" if titles[title] > 1 else ""
+        yield ProblemRows(number, title + again, tuple(group))
+
+
+def _title(problem: str, rows: Sequence[Row]) -> str:
+    """The problem's name; of one without a name, an expression of the command line, the target."""
+    target = next((row["fit"]["target"] for row in rows if row.get("fit")), None)
+    return shortened(target, 40) if problem == UNNAMED and target else problem
 
 
 def _lead(problems: Sequence[ProblemRows]) -> Iterator[Block]:

@@ -14,7 +14,8 @@ from ratfit._fit import Checked, Fit
 from ratfit._problem import Problem
 from ratfit.plot.curves import FitCurves
 from ratfit.plot.marks import Marker, Window, draw_asymptote, draw_point, draw_pole, draw_tangent, room_between
-from ratfit.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE, on_a_line, plain, text_width
+from ratfit.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE
+from ratfit.plot.text import on_a_line, plain, text_width
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,7 +63,7 @@ def draw_conditions(page: Page, fit: Fit) -> list[Any]:
     found: dict[str, tuple[Any, list[str]]] = {}
     for checked in fit.conditions:
         kind, text = _kind(checked, fit.problem.variable), _text(checked, fit)
-        handle = _draw(page, fit, checked, kind) or _nothing()
+        handle = _draw(page, fit, checked, kind) or said("")
         found.setdefault(kind, (handle, []))[1].append(text)
     for kind, (handle, texts) in found.items():
         handle.set_label(_entry(kind, texts))
@@ -140,10 +141,11 @@ def _draw_limits(page: Page, fit: Fit, checked: Checked) -> Any:
     return handle
 
 
-def _nothing() -> Any:
+def said(text: str) -> Any:
+    """An entry of the legend that stands for nothing drawn."""
     from matplotlib.lines import Line2D
 
-    return Line2D([], [], linestyle="none")
+    return Line2D([], [], linestyle="none", label=text)
 
 
 def _text(checked: Checked, fit: Fit) -> str:
@@ -156,11 +158,17 @@ def _text(checked: Checked, fit: Fit) -> str:
         return _limit_text(condition, checked.demand, x, f)
     if isinstance(condition, Integral):
         low, high = (_math(end) for end in condition.range(fit.problem.domain))
-        weight = "" if condition.weight == 1 else rf"\,{_product(condition.weight)}"
-        return _equation(rf"\int_{{{low}}}^{{{high}}} {f}{weight}\,d{_math(x)}", checked.demand)
+        return _equation(rf"\int_{{{low}}}^{{{high}}} {_weighted(condition.weight, f)}\,d{_math(x)}", checked.demand)
     assert isinstance(condition, Equation)
     more = f", with {condition.order} derivatives" if condition.order else ""
     return f"{_dollars(_math(condition.residual), '= 0')} at {_dollars(_math(x), '=', _math(condition.at))}{more}"
+
+
+def _weighted(weight: sp.Expr, f: str) -> str:
+    above, below = sp.fraction(weight)
+    written = f if above == 1 else rf"{_product(above)}\,{f}"
+    divisor = rf"\left({_math(below)}\right)" if below.is_Add or below.is_Mul else _math(below)
+    return written if below == 1 else f"{written}/{divisor}"
 
 
 def _limit_text(condition: Limit, demand: sp.Expr, x: sp.Symbol, f: str) -> str:

@@ -18,7 +18,8 @@ from ratfit._problem import Problem
 from ratfit._setting import Setting, setting
 from ratfit._target import Target, sample_values
 from ratfit.gallery import card, is_card
-from ratfit.plot.style import SERIES, significant
+from ratfit.plot.style import SERIES
+from ratfit.plot.text import significant
 from ratfit.plot.view import CUTS, broken, cut, is_pole
 
 Parameters = Mapping[str, float | Sequence[float]]

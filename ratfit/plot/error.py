@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ratfit.plot.style import BLUE, GREY, significant
+from ratfit.plot.style import BLUE, GREY
+from ratfit.plot.text import significant
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,24 +19,41 @@ PERCENT, PLAIN = "%", ""
 ROUNDING = 1e-14
 """Relative errors below this are float64's own rounding, and say nothing of the fit."""
 
+NEAR = 5e-5
+"""Nearer to an end than this, in parts of the range, a place is called that end's."""
+
 _NEEDED = 22
 """Points of height that the text at the worst point takes, with its distances."""
 
 
 @dataclass(frozen=True)
 class Worst:
-    """The place of the largest finite error, and that error with its sign; nan and nan where none is finite."""
+    """The place of the largest finite error between two ends, and that error, signed; nan where none is finite."""
 
     place: float
     error: float
+    ends: tuple[float, float]
+
+    @property
+    def where(self) -> str:
+        """The words "at", or "near" beside an end, and a number with as many digits as tell it from the ends."""
+        low, high = self.ends
+        for end in self.ends:
+            if 0 < abs(self.place - end) < NEAR * (high - low):
+                return f"near {{}}{significant(end, 3)}"
+        digits = next(d for d in range(2, 18) if d == 17 or self._differs(float(f"{self.place:.{d - 1}e}")))
+        return f"at {{}}{significant(self.place, digits)}"
+
+    def _differs(self, rounded: float) -> bool:
+        return self.place in self.ends or rounded not in self.ends
 
 
 def worst_of(places: Sequence[float], errors: Sequence[float]) -> Worst:
     known = [(abs(e), p, e) for p, e in zip(places, errors, strict=True) if math.isfinite(e)]
     if not known:
-        return Worst(math.nan, math.nan)
+        return Worst(math.nan, math.nan, (math.nan, math.nan))
     _, place, error = max(known, key=lambda found: found[0])
-    return Worst(float(place), float(error))
+    return Worst(float(place), float(error), (float(min(places)), float(max(places))))
 
 
 def worst_text(worst: Worst, *, variable: str = "", unit: str = PERCENT) -> str:
@@ -45,8 +63,7 @@ def worst_text(worst: Worst, *, variable: str = "", unit: str = PERCENT) -> str:
     if worst.error == 0 or (unit == PERCENT and abs(worst.error) < ROUNDING):
         return "no error beyond float64's rounding" if worst.error else "no error"
     number = f"{significant(100 * worst.error, 2)} %" if unit == PERCENT else significant(worst.error, 2)
-    place = significant(worst.place, 2)
-    return f"worst {number} at {variable} = {place}" if variable else f"worst {number} at {place}"
+    return f"worst {number} {worst.where.format(f'{variable} = ' if variable else '')}"
 
 
 def draw_error(

@@ -9,29 +9,12 @@ from typing import TYPE_CHECKING, Any, Literal
 from ratfit._fit import Fit
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
-from ratfit.plot.conditions import Page, draw_conditions, letter
+from ratfit.plot.conditions import Page, draw_conditions, letter, said
 from ratfit.plot.curves import ERRORS, FitCurves, Parameters, curves_of, other_formulas
 from ratfit.plot.error import PERCENT, PLAIN, Worst, draw_error, draw_error_curve, worst_text
 from ratfit.plot.marks import Window
-from ratfit.plot.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    PURPLE,
-    RED,
-    SERIES,
-    dress,
-    legend_below,
-    mathematics,
-    on_a_line,
-    plain,
-    settings,
-    shortened,
-    significant,
-    text_depth,
-    text_width,
-)
+from ratfit.plot.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, SERIES, dress, legend_below, settings
+from ratfit.plot.text import mathematics, on_a_line, plain, shortened, significant, text_depth, text_width
 from ratfit.plot.view import span
 
 if TYPE_CHECKING:
@@ -87,7 +70,7 @@ def plot_fit(
         handles = _draw_curves(above, fit, curves, reference, notes)
         lowest = above if below is None else below
         lowest.set_xlabel(plain(_x_label(fit, curves, parameters, reference)))
-        legend_below(lowest, handles)
+        legend_below(lowest, handles, is_ours=axes is None)
     return above, below
 
 
@@ -96,10 +79,10 @@ def _axes(given: Axes | Sequence[Axes] | None, has_strip: bool) -> tuple[Axes, A
     from matplotlib.figure import Figure
 
     if given is None and has_strip:
-        above, below = Figure(figsize=(6.6, 5.8), layout="constrained").subplots(2, sharex=True, height_ratios=(5, 2))
+        above, below = Figure(figsize=(6.6, 4.9), layout="constrained").subplots(2, sharex=True, height_ratios=(5, 2))
         return above, below
     if given is None:
-        return Figure(figsize=(6.6, 4.6), layout="constrained").subplots(), None
+        return Figure(figsize=(6.6, 3.6), layout="constrained").subplots(), None
     if isinstance(given, Axes):
         return given, None
     if len(given) != 2:
@@ -118,9 +101,12 @@ def _draw_curves(
     window = _window(curves, scales)
     axes.set_xlim(window.left, window.right)
     axes.set_ylim(window.bottom, window.top)
-    handles = _draw_lines(axes, curves, scales, _exact_text(fit.problem, reference), notes)
+    exact = _exact_text(fit.problem, reference)
+    handles = _draw_lines(axes, curves, scales, exact, notes)
     others = _draw_others(axes, fit, curves[0]) if len(curves) == 1 else []
     handles += [*others, *draw_conditions(Page(axes, window, curves, scales), fit)]
+    if curves[0].exact is None:
+        handles.append(said(exact))
     axes.set_xlim(window.left, window.right)
     axes.set_ylim(window.bottom, window.top)
     axes.set_ylabel(
@@ -170,7 +156,7 @@ def _draw_lines(
         line.set_label(plain("fit" if is_single else f"{curve.label}{note}"))
         fits.append(line)
     if curves[0].exact is None:
-        return [*fits, Line2D([], [], linestyle="none", label=plain(exact))]
+        return fits
     return [Line2D([], [], color=BLACK, label=exact, **_WIDE), *fits]
 
 
@@ -200,7 +186,7 @@ def _exact_text(problem: Problem, reference: str | None) -> str:
         return plain(f"exact: {reference}" + (f" ({source})" if source else ""))
     if problem.target is None:
         names = ", ".join(r.name for r in problem.references)
-        return "no target to compare with" + (f": draw against a reference, {names}" if names else "")
+        return plain("no target to compare with" + (f" (references: {names})" if names else ""))
     written = on_a_line(problem.target.expression)
     text = f"exact: ${written}$"
     return text if written is not None and text_width(text, 9) < TITLE / 2 else "exact"

@@ -15,7 +15,8 @@ from ratfit._condition import Limit
 from ratfit._study import Fact, Study
 from ratfit._study.curve import Curve
 from ratfit.plot.marks import Marker, Window, draw_asymptote, draw_point, draw_pole, draw_tangent, room_between
-from ratfit.plot.style import BLACK, BLUE, LETTERS, PURPLE, RED, dress, legend_below, plain, settings, shortened
+from ratfit.plot.style import BLACK, BLUE, LETTERS, PURPLE, RED, dress, legend_below, settings
+from ratfit.plot.text import plain, shortened
 from ratfit.plot.view import broken, cut, span
 
 if TYPE_CHECKING:
@@ -49,13 +50,14 @@ def plot_study(study: Study, axes: Axes | None = None) -> Axes:
     lines, poles dotted vertical ones; the numbers stand below the picture, clear of the curve. Parameters have the
     middle of their ranges, and an infinite domain is cut: both are said on the axis.
     """
-    with settings(axes is None):
+    is_ours = axes is None
+    with settings(is_ours):
         axes = axes if axes is not None else _new_axes()
-        _draw(axes, study, _view(study))
+        _draw(axes, study, _view(study), is_ours)
     return axes
 
 
-def _draw(axes: Axes, study: Study, view: _View) -> None:
+def _draw(axes: Axes, study: Study, view: _View, is_ours: bool) -> None:
     window = view.window
     _draw_curve(axes, view)
     handles = [*_draw_lines(axes, study, view), *_draw_tangents(axes, study, view), *_draw_points(axes, study, view)]
@@ -65,13 +67,13 @@ def _draw(axes: Axes, study: Study, view: _View) -> None:
     axes.set_ylabel(f"f({study.target.variable})")
     axes.set_title(plain(shortened(str(study.target.expression), 80)), fontsize=10)
     dress(axes)
-    legend_below(axes, handles)
+    legend_below(axes, handles, is_ours)
 
 
 def _new_axes() -> Axes:
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(6.6, 5.0), layout="constrained").subplots()
+    return Figure(figsize=(6.6, 4.2), layout="constrained").subplots()
 
 
 @dataclass(frozen=True)

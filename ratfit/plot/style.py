@@ -1,4 +1,4 @@
-"""What pictures share: colours, a figure of their own, a legend that covers no data, and how texts are set."""
+"""What pictures share: colours, settings for figures of our own, and a legend that covers no data."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-import sympy as sp
+from ratfit.plot.text import mathematics as mathematics
+from ratfit.plot.text import significant as significant
+from ratfit.plot.text import text_width
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,6 +49,13 @@ LETTERS = 62
 """Letters of an entry below a picture."""
 
 
+_BESIDE = 380
+"""Points that the texts of two columns may take together."""
+
+_ROW = 0.2
+"""Inches that a line of a legend takes."""
+
+
 @contextmanager
 def settings(are_ours: bool = True) -> Iterator[None]:
     """SETTINGS while a figure of our own is drawn or written; afterwards all is as it was."""
@@ -62,88 +71,27 @@ def dress(axes: Axes) -> None:
     axes.grid(alpha=0.25, linewidth=0.6)
 
 
-def legend_below(axes: Axes, handles: Sequence[Any]) -> None:
-    """A legend below the axes and their label, where no data are; a constrained layout makes room for it."""
+def legend_below(axes: Axes, handles: Sequence[Any], is_ours: bool) -> None:
+    """A legend below the axes and their label, where no data are.
+
+    A constrained layout makes room for it, and a figure of our own grows by it.
+    """
     from matplotlib.transforms import ScaledTranslation
 
     if not handles:
         return
-    down = ScaledTranslation(0, -38 / 72, axes.figure.dpi_scale_trans)
+    widths = [text_width(str(handle.get_label()), 9) for handle in handles]
+    half = (len(handles) + 1) // 2
+    columns = 2 if max(widths[:half]) + max(widths[half:], default=0) < _BESIDE else 1
+    if is_ours:
+        height = axes.figure.get_figheight() + _ROW * (half if columns == 2 else len(handles))  # type: ignore[union-attr]
+        axes.figure.set_figheight(height)  # type: ignore[union-attr]  # a Figure of its own
     axes.legend(
         handles=list(handles),
         loc="upper center",
         bbox_to_anchor=(0.5, 0),
-        bbox_transform=axes.transAxes + down,
-        ncols=1 if any(text_width(str(h.get_label()), 9) > 225 for h in handles) else 2,
+        bbox_transform=axes.transAxes + ScaledTranslation(0, -38 / 72, axes.figure.dpi_scale_trans),
+        ncols=columns,
         frameon=False,
         borderaxespad=0,
     )
-
-
-def shortened(text: str, letters: int) -> str:
-    """The text, or of a long one its beginning."""
-    return text if len(text) <= letters else text[: letters - 2].rstrip(" ,") + " …"
-
-
-def plain(text: str) -> str:
-    """A text in which matplotlib sees no mathematics."""
-    return text.replace("$", r"\$")
-
-
-def mathematics(expression: sp.Expr) -> str | None:
-    """An expression as matplotlib sets mathematics, without its dollars; None for what it cannot set."""
-    return _settable(sp.latex(rounded(expression)).replace(r"\frac", r"\dfrac"))
-
-
-def on_a_line(expression: sp.Expr) -> str | None:
-    """The same with a fraction written as pi/2 is, for a line of text: set upright it would need smaller type."""
-    above, below = sp.fraction(rounded(expression))
-    if below == 1:
-        return mathematics(expression)
-    bracketed = [_bracketed(above, above.is_Add), _bracketed(below, below.is_Add or below.is_Mul)]
-    return _settable("/".join(bracketed).replace(r"\frac", r"\dfrac"))
-
-
-def _bracketed(expression: sp.Expr, is_needed: bool) -> str:
-    written = sp.latex(expression)
-    return rf"\left({written}\right)" if is_needed else written
-
-
-def _settable(written: str) -> str | None:
-    from matplotlib.mathtext import MathTextParser
-
-    try:
-        MathTextParser("path").parse(f"${written}$")
-    except ValueError:  # cases, and other environments of LaTeX
-        return None
-    return written
-
-
-def rounded(expression: sp.Expr) -> sp.Expr:
-    """The expression with its decimals cut to four digits, for the eye."""
-    return expression.xreplace({number: sp.Float(number, 4) for number in expression.atoms(sp.Float)})
-
-
-def text_width(text: str, size: float) -> float:
-    """The width in points of a text at a size in points, mathematics between dollars set as such."""
-    return _measured(text, size).width
-
-
-def text_depth(text: str, size: float) -> float:
-    """How far below its line a text reaches, in points."""
-    return _measured(text, size).depth
-
-
-def _measured(text: str, size: float) -> Any:
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.mathtext import MathTextParser
-
-    return MathTextParser("path").parse(text, 72, FontProperties(family="DejaVu Sans", size=size))
-
-
-def significant(number: float, digits: int) -> str:
-    """A number to so many digits: "1.9", "120", "3.1e-7", with a true minus."""
-    short = float(f"{number:.{digits - 1}e}")
-    text = f"{short:.{digits}g}" if not 1e-4 <= abs(short) < 1e5 else f"{short:g}"
-    mantissa, _, power = text.partition("e")
-    return (mantissa + (f"e{int(power)}" if power else "")).replace("-", "−")

@@ -28,8 +28,12 @@ __version__ = "0.1.0"
 
 # What needs JAX, or is long and not always needed, is loaded on first use: `import ratfit` stays as light as sympy.
 _LATER = {
+    "BACKENDS": "ratfit._speed",
+    "DEFINITIONS": "ratfit._error",
+    "Watch": "ratfit._error",
     "measure_error": "ratfit._error",
     "measure_speed": "ratfit._speed",
+    "peers": "ratfit.baselines",
     "schedule": "ratfit._schedule",
     "study": "ratfit._study",
 }

@@ -47,6 +47,18 @@ class Setting:
         return (self.variable, *self.ranges)
 
 
+def in_words(measured: Any) -> str:
+    """Type, samples, parameters and reference of a measurement, as its `repr` shows them."""
+    said = [measured.dtype, f"{measured.samples:,} samples"]
+    for name, value in measured.parameters.items():
+        said.append(
+            f"{name} = {value:.6g}"
+            if isinstance(value, float)
+            else f"{name} random in [{value[0]:.6g}, {value[1]:.6g}]"
+        )
+    return ", ".join([*said, *([f"against {measured.reference}"] if measured.reference else [])])
+
+
 def setting(
     fit: Any,
     parameters: Mapping[str, Value] | None = None,

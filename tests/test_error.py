@@ -6,7 +6,7 @@ coefficients are parameters, which enter at run time.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import jax
@@ -461,6 +461,14 @@ def test_parameters_reach_the_fit_the_target_and_the_domain():
     place = setting(scaled, {"b": 0.5, "a": 2})
     assert (place.low, place.high, list(place.parameters.items())) == (0, 0.5, [("a", 2.0), ("b", 0.5)])
     assert measure((0, 1), (0, 1), (1, 3), samples=10).parameters == values((0, 1), (0, 1), (1, 3))
+
+
+def test_a_measurement_in_a_notebook_is_one_line():
+    found = measure_error(fit(x, x + a, parameters=(a,)), samples=1000, parameters={"a": "random"}, dtype="float64")
+    exact = measure_error(fit(x, x + a, parameters=(a,)), samples=1000, parameters={"a": 0.0}, dtype="float64")
+    assert repr(exact).startswith("<eps peak_mean 0, peak_max 0, relative_mean 0, relative_max 0, ulp_max 0; uniform, ")
+    assert repr(found).startswith("<eps peak_mean ") and "1,000 samples, a random in [0, 2]" in repr(found)
+    assert repr(replace(found, epsilon={}, reference="other")).endswith(", against other>")
 
 
 @pytest.mark.parametrize(

@@ -107,8 +107,9 @@ def test_public_names_are_what_init_says_and_belong_to_ratfit():
         assert getattr(found, "__doc__", None), f"{name} has no docstring"
     for name in ("derive", "Problem", "Target", "Value", "Derivative", "Integral", "Rational", "Form", "Power"):
         assert name in public
-    for name in ("measure_error", "measure_speed", "schedule"):
+    for name in ("measure_error", "measure_speed", "peers", "schedule", "study", "Watch"):
         assert callable(getattr(ratfit, name))
+    assert "peak_mean" in ratfit.DEFINITIONS and "numpy" in ratfit.BACKENDS
 
 
 def test_no_text_is_ever_evaluated():

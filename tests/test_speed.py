@@ -1,6 +1,7 @@
 """Speed: what is timed, in which order, what is checked and what the record says; no test depends on a clock."""
 
 import os
+import re
 import statistics
 from collections import Counter
 from dataclasses import FrozenInstanceError, dataclass, replace
@@ -272,8 +273,17 @@ def test_float16_is_for_arrays():
     fit = fit_of(sp.sin(x), x)
     assert measure_speed(fit, backend="numpy", dtype="float16", samples=1000, repeats=1).checked
     if "c-scalar" in TIMED:
-        with pytest.raises(RatfitError, match="C computes in float32 or float64: time float16 with a backend"):
-            measure_speed(fit, backend="c-scalar", dtype="float16", samples=10, repeats=1)
+        found = measure_speed(fit, backend="c-scalar", dtype="float16", samples=10, repeats=1)
+        assert found.gamma is None and not found.exact_times
+        assert found.note == "not timed: C computes in float32 or float64: time float16 with a backend of arrays"
+
+
+def test_a_measurement_in_a_notebook_is_one_line():
+    told = repr(measure_speed(SMITH, backend="numpy", samples=1000, parameters=HALF, repeats=3))
+    assert re.match(r"<gamma [\d.]+ \[[\d.]+, [\d.]+\]; numpy, float32, 1,000 samples, k = 0.5; ", told)
+    counted = measure_speed(SMITH, backend="cost-model", samples=1000, parameters={"k": "random"})
+    assert re.match(r"<gamma [\d.]+ \(counted\); cost-model, .*, k random in \[0, 1\]; exact function", repr(counted))
+    assert repr(replace(counted, gamma=None)).startswith("<no gamma; cost-model")
 
 
 def test_a_fit_equal_to_the_exact_function_has_gamma_1_in_the_cost_model():

@@ -20,13 +20,17 @@ from ratfit._error.stream import Watch, pass_of, stream
 from ratfit._error.subnormal import flushed_samples
 from ratfit._error.totals import Totals
 from ratfit._sampling import bounds, check_protocol, count, drawn, resolve
-from ratfit._setting import Setting, Value, setting
+from ratfit._setting import Setting, Value, in_words, setting
 
 VANISHING = 1000.0
 """A relative error that says more of how small the exact function is than of the fit."""
 
 
-@dataclass(frozen=True)
+LEADING = ("peak_mean", "peak_max", "relative_mean", "relative_max", "ulp_max")
+"""The definitions that are shown where there is no room for all."""
+
+
+@dataclass(frozen=True, repr=False)
 class ErrorMeasurement:
     """The errors of a fit under every definition, with all that it takes to measure them again.
 
@@ -53,6 +57,12 @@ class ErrorMeasurement:
     kept: tuple[KeptValue, ...] = ()
     curve: dict[str, Any] | None = None
     note: str = ""
+
+    def __repr__(self) -> str:
+        """What a notebook shows: a few definitions, how they were measured, and the note; `epsilon` has them all."""
+        known = [f"{name} {value:.3g}" for name in LEADING if (value := self.epsilon.get(name)) is not None]
+        eps = ", ".join(known) or "none of the leading definitions"
+        return f"<eps {eps}; {self.sampling}, {in_words(self)}{f'; {self.note}' if self.note else ''}>"
 
 
 def measure_error(

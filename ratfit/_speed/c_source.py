@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from ratfit._lower import Step, repeated_product
-from ratfit._parse import RatfitError
+from ratfit._speed.contest import Unsupported
 
 _INFIX: Mapping[str, str] = {
     "add": "+", "subtract": "-", "multiply": "*", "divide": "/",
@@ -84,10 +84,10 @@ def c_source(tapes: Mapping[str, Sequence[Step]], varying: int, dtype: str) -> s
     **Returns:** functions `void name(size_t count, const real *const *samples, const real *constants, real *out)`. The
     constants are arguments, so that no compiler computes with them beforehand.
 
-    **Fails** with `RatfitError` for an operation or a dtype that C does not have.
+    **Fails** with `Unsupported` for an operation or a dtype that C does not have.
     """
     if dtype not in _TYPES:
-        raise RatfitError(f"C computes in {' or '.join(_TYPES)}: time {dtype} with a backend of arrays")
+        raise Unsupported(f"C computes in {' or '.join(_TYPES)}: time {dtype} with a backend of arrays")
     functions = [_function(name, steps, varying, dtype) for name, steps in tapes.items()]
     return "\n".join((_HEADER.format(**_TYPES[dtype]), *functions))
 
@@ -156,7 +156,7 @@ def _value(step: Step, place: int, entries: Sequence[str], varying: int, dtype: 
         return f"{_LIBRARY[step.operation]}{_TYPES[dtype]['f']}({', '.join(operands)})"
     if step.operation in _OWN:
         return f"{_OWN[step.operation]}({', '.join(operands)})"
-    raise RatfitError(f"C has no {step.operation}: measure this function with a backend of arrays")
+    raise Unsupported(f"C has no {step.operation}: measure this function with a backend of arrays")
 
 
 class _Product(str):

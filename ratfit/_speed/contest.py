@@ -11,10 +11,15 @@ import sympy as sp
 
 from ratfit._kernel import Hoisted, Program, hoist
 from ratfit._lower import Step, tape
+from ratfit._parse import RatfitError
 from ratfit._sampling import bounds, drawn
 from ratfit._setting import Setting
 
 NAMES = ("exact function", "fit", "copy floor")
+
+
+class Unsupported(RatfitError):
+    """What one backend cannot run, whatever the machine has: that says nothing of the others."""
 
 
 @dataclass(frozen=True)

@@ -9,16 +9,16 @@ from typing import Any
 
 from ratfit._parse import RatfitError
 from ratfit._sampling import check_protocol
-from ratfit._setting import Setting, Value, setting
+from ratfit._setting import Setting, Value, in_words, setting
 from ratfit._speed.backends import BACKENDS, backend_named
 from ratfit._speed.check import verdict
-from ratfit._speed.contest import Contest, Runs, contest, entrants
+from ratfit._speed.contest import Contest, Runs, Unsupported, contest, entrants
 from ratfit._speed.cost_model import weight
 from ratfit._speed.notes import floor_note, load, noise_note, size_note
 from ratfit._speed.rounds import race, ratio_interval
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SpeedMeasurement:
     """The times of exact, fit and copy floor, and what follows from them.
 
@@ -26,7 +26,8 @@ class SpeedMeasurement:
     are the ends of its 95 % interval. `exact_s`, `fit_s` and `floor_s` are the medians, in seconds for one call on all
     samples, of the raw `exact_times`, `fit_times` and `floor_times`, one a round. `note` says how to read gamma.
 
-    gamma is None where the timed output is wrong, which the note then says. The cost model times nothing: its gamma is
+    gamma is None where the timed output is wrong, and where the backend has not this type or one of the operations,
+    which the note then says. The cost model times nothing: its gamma is
     a ratio of weights without an interval, and it has no seconds.
     """
 
@@ -49,6 +50,17 @@ class SpeedMeasurement:
     floor_times: tuple[float, ...] = ()
     flags: str = ""  # XLA_FLAGS as they stood, or the compiler and its flags
     checked: bool | None = None  # whether the timed output is what the formulas mean; None where nothing ran
+
+    def __repr__(self) -> str:
+        """What a notebook shows: gamma with its interval, where it was measured, and the note; no raw times."""
+        return f"<{self._gamma_in_words()}; {self.backend}, {in_words(self)}{f'; {self.note}' if self.note else ''}>"
+
+    def _gamma_in_words(self) -> str:
+        if self.gamma is None:
+            return "no gamma"
+        if self.gamma_low is None or self.gamma_high is None:
+            return f"gamma {self.gamma:.3g} (counted)"
+        return f"gamma {self.gamma:.3g} [{self.gamma_low:.3g}, {self.gamma_high:.3g}]"
 
 
 def measure_speed(
@@ -84,7 +96,11 @@ def measure_speed(
     if chosen.prepare is None:
         return _modelled(asked, place)
     waiting, three = load(), contest(place, samples, seed, dtype)
-    return _timed(asked, three, chosen.prepare(three), waiting, repeats)
+    try:
+        runs = chosen.prepare(three)
+    except Unsupported as reason:
+        return replace(asked, note=f"not timed: {reason}")
+    return _timed(asked, three, runs, waiting, repeats)
 
 
 def _modelled(asked: SpeedMeasurement, place: Setting) -> SpeedMeasurement:

@@ -22,7 +22,7 @@ ROUNDING = 2.0**-22
 """Errors below four roundings of float32 are one and the same: they say nothing of the way of writing."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Peer:
     """What a fit must beat, at the values of the parameters that it was made for: it is measured like a fit.
 
@@ -36,6 +36,9 @@ class Peer:
     formula: sp.Expr
     about: str
     cost: Cost
+
+    def __repr__(self) -> str:
+        return f"<Peer {self.name} of {self.problem.name}: {self.about}>"
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 import ratfit as rf
 from paper_figures import style
 from paper_figures.curves import Curve, curve
-from paper_figures.style import percent
+from paper_figures.strip import thin
+from paper_figures.style import percent, share
 from ratfit.plot.error import draw_error
-from ratfit.plot.style import SERIES, significant
+from ratfit.plot.style import SERIES
+from ratfit.plot.text import significant
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,17 +39,18 @@ def data() -> Sine:
 
 
 def draw(found: Sine, width: float = style.PAGE) -> Figure:
-    curve = found.fraction
+    fraction = found.fraction
     with style.sheet(width, 40 + 0.42 * width) as figure:
         panels = figure.subplot_mosaic([["true", "fraction"], ["error", "error"]], height_ratios=(3, 2))
         for name, title, heights in (
-            ("true", r"True function: $\sin x$", curve.exact),
-            ("fraction", "Rational approximation: Eq. 12", curve.fit),
+            ("true", r"True function: $\sin x$", fraction.exact),
+            ("fraction", "Rational approximation: Eq. 12", fraction.fit),
         ):
-            panels[name].plot(curve.places, heights, color=style.INK)
+            panels[name].plot(fraction.places, heights, color=style.INK)
             panels[name].set_title(title)
             panels[name].set_xlabel("$x$")
             _quarter_turn(panels[name])
+            style.unit_ticks(panels[name].yaxis, 0.25)
         _draw_errors(panels["error"], found)
         _quarter_turn(panels["error"])
         panels["true"].set_ylabel("$f(x)$")
@@ -55,10 +58,10 @@ def draw(found: Sine, width: float = style.PAGE) -> Figure:
 
 
 def _draw_errors(axes: Axes, found: Sine) -> None:
-    for curve, (colour, dashes) in zip((found.fraction, found.cubic), SERIES, strict=False):
-        draw_error(axes, curve.places, curve.errors, colour=colour, dashes=dashes, label=curve.label, variable="x")
-    axes.set_title("Error, approximation − true", loc="left")
-    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0, borderpad=0.2)
+    for each, (colour, dashes) in zip((found.fraction, found.cubic), SERIES, strict=False):
+        draw_error(axes, each.places, each.errors, colour=colour, dashes=dashes, label=each.label, variable="$x$")
+    thin(axes)
+    style.head(axes, "Error, approximation − true:")
 
 
 def _quarter_turn(axes: Axes) -> None:
@@ -72,7 +75,7 @@ def caption(found: Sine) -> str:
     return (
         "The sine on a quarter turn. Above, as the paper drew it: the true function and the fraction of Eq. 12. "
         f"Beneath: the error of the fraction, in percent of the peak, at worst {percent(fraction.worst[1])} at "
-        f"x = {significant(fraction.worst[0], 2)} and {percent(fraction.mean)} on average, where the paper prints "
+        f"x = {significant(fraction.worst[0], 2)} and {share(fraction.mean)} on average, where the paper prints "
         "1.4 %. A cubic that keeps the same four conditions needs no division and is closer: at worst "
-        f"{percent(cubic.worst[1])}, on average {percent(cubic.mean)}."
+        f"{percent(cubic.worst[1])}, on average {share(cubic.mean)}."
     )

@@ -8,8 +8,8 @@ import ratfit as rf
 from paper_figures import style
 from paper_figures.curves import Curve, curve
 from paper_figures.strip import draw_strip
-from paper_figures.style import percent
-from ratfit.plot.style import significant
+from paper_figures.style import percent, share
+from ratfit.plot.text import significant
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,9 +36,11 @@ def draw(found: tuple[Curve, ...], width: float = style.PAGE) -> Figure:
         draw_strip(panels["error"], found, "Eq. 15 − Eq. 13, at worst:")
         for name, axes in panels.items():
             axes.set_xlim(0, 1)
+            style.unit_ticks(axes.xaxis, 0.25)
             axes.set_xlabel("$u$")
             if name != "error":
                 axes.set_ylim(0, 1.02)
+                style.unit_ticks(axes.yaxis, 0.25)
         panels["true"].set_ylabel(r"$F_\lambda(u)$")
         style.share_legend(figure, panels["true"])
     return figure
@@ -46,7 +48,7 @@ def draw(found: tuple[Curve, ...], width: float = style.PAGE) -> Figure:
 
 def caption(found: tuple[Curve, ...]) -> str:
     each = ", ".join(
-        f"{c.label} {percent(c.worst[1])} at u = {significant(c.worst[0], 2)} ({percent(c.mean)} on average)"
+        f"{c.label} {percent(c.worst[1])} at u = {significant(c.worst[0], 2)} ({share(c.mean)} on average)"
         for c in found
     )
     return (

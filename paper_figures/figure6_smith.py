@@ -25,6 +25,7 @@ LEAST = 0.001
 class Smith:
     """Eq. 19 against three functions, one curve for each m: Eq. 18, Smith's own, and the one used today."""
 
+    values: tuple[float, ...]
     printed: tuple[Curve, ...]
     smith: tuple[Curve, ...]
     walter: tuple[Curve, ...]
@@ -35,13 +36,14 @@ def data() -> Smith:
 
     fit = rf.derive("eq19")
     # Close to both ends: the steepest curves rise within m of 0, and Eq. 18 falls short of 1 until just before v = 1.
-    v = np.concatenate([[0.0], np.geomspace(1e-4, 0.5, 500), 1 - np.geomspace(0.5, 1e-7, 301)[1:]])
-    values = [float(setting["m"]) for setting in card("eq19").settings]
+    v = np.concatenate([[0.0], np.geomspace(1e-4, 0.5, 300), 1 - np.geomspace(0.5, 1e-7, 201)[1:]])
+    values = tuple(float(setting["m"]) for setting in card("eq19").settings)
     return Smith(
+        values,
         *(
             tuple(curve(fit, v, f"m = {m:g}", {"m": m}, reference) for m in values)
             for reference in (None, "smith-1967", "walter-2007")
-        )
+        ),
     )
 
 
@@ -57,19 +59,19 @@ def draw(found: Smith, width: float = style.PAGE) -> Figure:
 
 
 def _draw_functions(panels: Mapping[str, Axes], found: Smith) -> None:
-    labels, places = zip(*((f"${c.label}$", c.places) for c in found.printed), strict=True)
+    labels, places = style.family("m", found.values), [c.places for c in found.printed]
     for name, title, heights in (
         ("printed", "True function as printed: Eq. 18", [c.exact for c in found.printed]),
         ("fit", "Rational approximation: Eq. 19", [c.fit for c in found.printed]),
-        ("smith", "Smith's own function, 1967", [c.exact for c in found.smith]),
-        ("walter", "The function used today, Walter 2007", [c.exact for c in found.walter]),
+        ("smith", "Smith's own: Smith 1967", [c.exact for c in found.smith]),
+        ("walter", "Used today: Walter 2007", [c.exact for c in found.walter]),
     ):
         axes = panels[name]
         style.draw_family(axes, labels, places, heights)
         axes.set_title(title)
         axes.set(xlim=(0, 1), ylim=(0, 1.02), xlabel="$v$")
-        axes.set_xticks([0, 0.25, 0.5, 0.75, 1], ["0", "0.25", "0.5", "0.75", "1"])
-        axes.set_yticks([0, 0.5, 1], ["0", "0.5", "1"])
+        style.unit_ticks(axes.xaxis, 0.25)
+        style.unit_ticks(axes.yaxis, 0.5)
     for name in ("printed", "smith"):
         panels[name].set_ylabel("$G(v)$")
 
@@ -89,12 +91,12 @@ def _draw_errors(strips: Sequence[Axes], found: Smith) -> None:
 
 def caption(found: Smith) -> str:
     def worst(curves: Sequence[Curve]) -> str:
-        return f"{percent(curves[0].worst[1])} at {curves[0].label} to {percent(curves[-1].worst[1])} at {curves[-1].label}"
+        return " to ".join(f"{percent(c.worst[1])} at {c.label}" for c in (curves[0], curves[-1]))
 
     return (
-        "Smith's factor over v, the cosine of the angle, for five RMS slopes m. First row, as the paper drew it: Eq. 18 "
-        "and Eq. 19. Second row, what the paper did not show: Eq. 18 lacks an exponential, Smith's own function has it; "
-        "the function used today rises twice as steeply. Beneath: the errors of Eq. 19 against each of the three, with "
-        f"the worst points: {worst(found.printed)} against Eq. 18, {worst(found.smith)} against Smith's, "
-        f"{worst(found.walter)} against today's. The paper prints 1.8 %."
+        "Smith's factor over v, the cosine of the angle, for five slopes m. First row, as the paper drew it: Eq. 18 "
+        "and Eq. 19. Second row, what the paper did not show: Eq. 18 lacks an exponential, Smith's own function has "
+        "it, and the function used today rises twice as steeply. Beneath: the errors of Eq. 19 against each of the "
+        f"three, in percent of 1, with the worst point of each curve: {worst(found.printed)} against Eq. 18, "
+        f"{worst(found.smith)} against Smith's, {worst(found.walter)} against today's. The paper prints 1.8 %."
     )

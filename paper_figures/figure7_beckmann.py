@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import ratfit as rf
 from paper_figures import style
 from paper_figures.curves import Curve, curve
+from paper_figures.polar import draw_lobes, draw_sector
 from paper_figures.strip import draw_strip
 from paper_figures.style import percent
 from ratfit.gallery import card
@@ -21,8 +22,10 @@ if TYPE_CHECKING:
 SLOPES = 5.0
 """How far the curves go, in slopes m: Beckmann's function has fallen below 1e-9 of its peak there."""
 
-OPEN = 60
-"""Degrees that are shown to each side: at m = 0.5, the widest, Eq. 21 ends there, at t = 1 - m."""
+OPEN = 45
+"""Degrees that are shown to each side: at m = 0.5, the widest, a tenth of the peak is left there."""
+
+TITLE = "(Eq. 21 − Eq. 20)/peak, at worst:"
 
 
 @dataclass(frozen=True)
@@ -50,29 +53,20 @@ def _lobe(fit: rf.Fit, m: float) -> Lobe:
 
 
 def draw(found: tuple[Lobe, ...], width: float = style.PAGE) -> Figure:
-    with style.sheet(width, 35 + 0.5 * width) as figure:
-        grid = figure.add_gridspec(2, 2, height_ratios=(3, 2))
-        for column, title, name in (
-            (0, "True function: Eq. 20", "exact"),
-            (1, "Rational approximation: Eq. 21", "fit"),
-        ):
-            axes = figure.add_subplot(grid[0, column], projection="polar")
-            _draw_lobes(axes, found, [getattr(lobe.curve, name) / lobe.curve.peak for lobe in found])
-            axes.set_title(title)
-        style.share_legend(figure, figure.axes[0])
-        strip = figure.add_subplot(grid[1, :])
-        draw_strip(strip, [lobe.curve for lobe in found], "Eq. 21 − Eq. 20, at worst:", [lobe.slope for lobe in found])
-        strip.set(xlim=(0, SLOPES), xlabel=r"$\tan\alpha\,/\,m$", ylabel=r"parts of $1/m^2$")
+    with style.sheet(width, 27 + 0.58 * width) as figure:
+        panels = figure.subplot_mosaic([["true", "fit"], ["error", "error"]], height_ratios=(3, 2))
+        _draw_lobes(panels["true"], "True function: Eq. 20", found, [lobe.curve.exact for lobe in found])
+        _draw_lobes(panels["fit"], "Rational approximation: Eq. 21", found, [lobe.curve.fit for lobe in found])
+        style.share_legend(figure, panels["true"])
+        draw_strip(panels["error"], [lobe.curve for lobe in found], TITLE, [lobe.slope for lobe in found])
+        panels["error"].set(xlim=(0, SLOPES), xlabel=r"$\tan\alpha\,/\,m$")
     return figure
 
 
-def _draw_lobes(axes: Axes, found: Sequence[Lobe], radii: Sequence[NDArray]) -> None:
-    labels = [f"${lobe.curve.label}$" for lobe in found]
-    angles = [style.mirrored(lobe.angle, -1) for lobe in found]
-    style.draw_family(axes, labels, angles, [style.mirrored(radius) for radius in radii])
-    style.sector(axes, OPEN)
-    axes.set_rlim(0, 1)
-    axes.set_rticks([0.25, 0.5, 0.75, 1], ["", "0.5", "", "1"])
+def _draw_lobes(axes: Axes, title: str, found: Sequence[Lobe], heights: Sequence[NDArray]) -> None:
+    radii = [height / lobe.curve.peak for lobe, height in zip(found, heights, strict=True)]
+    draw_lobes(axes, style.family("m", [lobe.m for lobe in found]), [lobe.angle for lobe in found], radii)
+    draw_sector(axes, title, 1, OPEN, {0.25: "", 0.5: "½", 0.75: "", 1: "peak"}, 15)
 
 
 def caption(found: tuple[Lobe, ...]) -> str:
@@ -81,6 +75,6 @@ def caption(found: tuple[Lobe, ...]) -> str:
         "Beckmann's distribution of slopes in polar coordinates: alpha, the angle to the normal, against D(t), "
         "t = cos(alpha), here in parts of its peak 1/m^2, which grows from 4 to 10 000 as m falls from 0.5 to 0.01. "
         "Above, as the paper drew it: the true function and Eq. 21. Beneath: the error, in percent of the peak, over "
-        f"the slope in units of m, with the worst points: {each}. Where the true lobe has a flank, at slopes of about "
-        "0.7 m, the fit is too narrow, and from 1.5 m on too wide, until it ends at t = 1 - m. The paper prints 2.7 %."
+        f"the slope in units of m, with the worst points: {each}. Eq. 21 falls faster "
+        "at first, is too high from slopes of about 1.5 m on, and ends at t = 1 - m. The paper prints 2.7 %."
     )

@@ -3,7 +3,6 @@ the A that keeps Eq. 27, and how far the printed ones are from them."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -11,10 +10,13 @@ from typing import TYPE_CHECKING
 import ratfit as rf
 from paper_figures import style
 from paper_figures.curves import Curve, curve
+from paper_figures.polar import draw_disc, draw_lobes, draw_sector
 from paper_figures.strip import draw_strip
+from paper_figures.style import percent
 from ratfit._lower import lower
 from ratfit.gallery import card
-from ratfit.plot.error import draw_error_curve
+from ratfit.plot.style import SERIES
+from ratfit.plot.text import significant
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,8 +26,16 @@ if TYPE_CHECKING:
 VALUES = (0.01, 0.05, 0.2, 0.5, 1.0)
 """The values of r and of p."""
 
-POWERS = (-3, 2)
-"""Powers of ten in the centre of the polar axes and at their rim."""
+CENTRE = 1e-3
+"""What stands in the centre of the logarithmic polar coordinates."""
+
+RINGS = {1: "0.01", 2: "", 3: "1", 4: "", 5: "100"}
+"""Decades above the centre, with what they are called."""
+
+RIM = 5.1
+
+WIDE = [["zenith", "printed", "right"], ["beckmann", "printed", "right"], ["errors"] * 3, ["means"] * 3]
+TALL = [["zenith", "printed"], ["beckmann", "right"], ["errors"] * 2, ["means"] * 2]
 
 
 @dataclass(frozen=True)
@@ -59,7 +69,7 @@ def _zenith() -> Zenith:
     import numpy as np
 
     fit = rf.derive("eq28z")
-    angle = np.linspace(0, np.pi / 2, 721)
+    angle = np.linspace(0, np.pi / 2, 541)
     t = np.cos(angle)
     curves = (curve(fit, t, f"r = {r:g}", {"r": r}, "beckmann", peak=fit(1.0, r=r)) for r in VALUES)
     return Zenith(angle, tuple(curves))
@@ -71,8 +81,8 @@ def _azimuth() -> Azimuth:
     fit, published = rf.derive("eq28a"), card("azimuth-as-printed")
     w, (p,) = published.problem.variable, published.problem.parameters
     printed = lower(published.published, [w, p])
-    angle = np.linspace(0, np.pi / 2, 721)
-    isotropy = np.geomspace(0.01, 1, 61)
+    angle = np.linspace(0, np.pi / 2, 541)
+    isotropy = np.unique([*np.geomspace(0.01, 1, 61), *VALUES])
     # The trapezoidal rule converges geometrically here: A is periodic in the azimuth, and even at both ends.
     fine = np.cos(np.linspace(0, np.pi / 2, 4001))
     return Azimuth(
@@ -93,65 +103,76 @@ def _mean(values: NDArray) -> float:
 
 def draw(found: tuple[Zenith, Azimuth], width: float = style.PAGE) -> Figure:
     zenith, azimuth = found
-    with style.sheet(width, 55 + 0.85 * width) as figure:
-        grid = figure.add_gridspec(3, 2, height_ratios=(5, 5, 3))
-        halves = grid[0, 0].subgridspec(2, 1)
-        axes = figure.add_subplot(halves[0], projection="polar")
-        _draw_zenith(axes, zenith, [c.fit for c in zenith.curves])
-        axes.set_title("$Z(t)$, Eq. 28")
-        style.share_legend(figure, axes)
-        below = figure.add_subplot(halves[1], projection="polar")
-        _draw_zenith(below, zenith, [c.exact for c in zenith.curves])
-        below.set_title("Beckmann's $D(t)$ at $m^2 = r$")
-        for cell, heights, title in (
-            (grid[0, 1], azimuth.printed, "$A(w)$ as printed, Eq. 28"),
-            (grid[1, 1], azimuth.right, "$A(w)$ as Eq. 27 needs it"),
-        ):
-            disc = figure.add_subplot(cell, projection="polar")
-            _draw_azimuth(disc, azimuth, heights)
-            disc.set_title(title)
-        _draw_zenith_errors(figure.add_subplot(grid[1, 0]), zenith)
-        _draw_means(figure.add_subplot(grid[2, :]), azimuth)
+    rows, heights, height = (WIDE, (5, 5, 5, 4), 165) if width > style.NARROW else (TALL, (8, 8, 6, 5), 165)
+    with style.sheet(width, height) as figure:
+        panels = figure.subplot_mosaic(rows, height_ratios=heights)
+        _draw_zenith(panels["zenith"], "$Z(t)$: Eq. 28", zenith, [c.fit for c in zenith.curves])
+        _draw_zenith(panels["beckmann"], "Beckmann's $D(t)$, $m^2 = r$", zenith, [c.exact for c in zenith.curves])
+        _draw_azimuth(panels["printed"], "$A(w)$ as printed: Eq. 28", azimuth, azimuth.printed)
+        _draw_azimuth(panels["right"], "$A(w)$ that keeps Eq. 27", azimuth, azimuth.right)
+        _draw_zenith_errors(panels["errors"], zenith)
+        _draw_means(panels["means"], azimuth)
+        style.share_legend(figure, panels["zenith"])
     return figure
 
 
-def _draw_zenith(axes: Axes, zenith: Zenith, heights: Sequence[NDArray]) -> None:
-    labels = [f"$r, p = {value:g}$" for value in VALUES]
-    radii = [style.mirrored(_logarithm(height)) for height in heights]
-    style.draw_family(axes, labels, [style.mirrored(zenith.angle, -1)] * len(VALUES), radii)
-    style.sector(axes, 90)
-    style.decades(axes, *POWERS)
+def _draw_zenith(axes: Axes, title: str, zenith: Zenith, heights: Sequence[NDArray]) -> None:
+    draw_lobes(axes, style.family("r, p", VALUES), [zenith.angle] * len(VALUES), [radius(height) for height in heights])
+    draw_sector(axes, title, RIM, 90, RINGS, 30)
 
 
-def _draw_azimuth(axes: Axes, azimuth: Azimuth, heights: Sequence[NDArray]) -> None:
+def _draw_azimuth(axes: Axes, title: str, azimuth: Azimuth, heights: Sequence[NDArray]) -> None:
+    """The first quadrant and its mirror images; phi runs from the right, so the lobes stand upright."""
     import numpy as np
 
-    half = style.mirrored(azimuth.angle, -1)
-    angle = np.concatenate([half, half + np.pi])
-    radii = [np.tile(style.mirrored(_logarithm(height)), 2) for height in heights]
-    style.draw_family(axes, [f"$p = {p:g}$" for p in VALUES], [angle] * len(VALUES), radii)
-    ticks = range(0, 360, 45)
-    axes.set_xticks([math.radians(tick) for tick in ticks], [f"{tick}°" for tick in ticks])
-    axes.tick_params(axis="x", pad=-2)
-    style.decades(axes, *POWERS)
+    angle = np.pi / 2 - azimuth.angle[::-1]
+    whole = np.concatenate([angle, np.pi - angle[::-1]])
+    radii = [radius(np.concatenate([height[::-1], height])) for height in heights]
+    draw_lobes(axes, [f"$p = {p:g}$" for p in VALUES], [whole] * len(VALUES), radii)
+    draw_disc(axes, title, RIM, RINGS, 45)
 
 
-def _logarithm(height: NDArray) -> NDArray:
-    """The radius: the decimal logarithm, cut at the centre."""
+def radius(height: NDArray) -> NDArray:
+    """Decades above the centre."""
     import numpy as np
 
-    return np.log10(np.maximum(height, 10.0 ** POWERS[0]))
+    return np.log10(np.maximum(height, CENTRE) / CENTRE)
 
 
 def _draw_zenith_errors(axes: Axes, zenith: Zenith) -> None:
     import numpy as np
 
-    draw_strip(axes, zenith.curves, "", [np.degrees(zenith.angle)] * len(VALUES))
-    axes.set(xlim=(0, 90), xlabel=r"$\alpha$", ylabel=r"$Z - D$, parts of $1/r$")
-    axes.set_xticks(range(0, 91, 30), [f"{tick}°" for tick in range(0, 91, 30)])
+    draw_strip(axes, zenith.curves, "$(Z - D)\\,/\\,(1/r)$, at worst:", [np.degrees(zenith.angle)] * len(VALUES))
+    axes.set(xlim=(0, 90), xlabel=r"$\alpha$")
+    axes.set_xticks(range(0, 91, 15), [f"{tick}°" for tick in range(0, 91, 15)])
 
 
 def _draw_means(axes: Axes, azimuth: Azimuth) -> None:
-    draw_error_curve(axes, azimuth.isotropy, azimuth.printed_mean - 1, label="as printed")
-    draw_error_curve(axes, azimuth.isotropy, azimuth.right_mean - 1, label="as Eq. 27 needs it")
-    axes.set(xscale="log", xlim=(0.01, 1), xlabel="$p$")
+    axes.plot(azimuth.isotropy, azimuth.printed_mean, color=style.INK, label="as printed")
+    axes.plot(azimuth.isotropy, azimuth.right_mean, color=style.INK, linestyle="--", label="that keeps Eq. 27")
+    axes.set_title("Mean of $A$ over the azimuth; Eq. 27 wants 1", loc="left")
+    for p, (colour, _) in zip(VALUES, SERIES, strict=False):
+        mean = azimuth.printed_mean[abs(azimuth.isotropy - p).argmin()]
+        axes.plot([p], [mean], "o", color=colour, clip_on=False, zorder=4)
+        side = {VALUES[0]: "left", VALUES[-1]: "right"}.get(p, "center")
+        shift = {"left": 3, "right": 0, "center": 0}[side]
+        axes.annotate(significant(mean, 2), (p, mean), (shift, -5), textcoords="offset points", ha=side, va="top")
+    axes.set(xscale="log", xlim=(0.01, 1), ylim=(0, 1.1), xlabel="$p$")
+    axes.set_xticks([0.01, 0.1, 1], ["0.01", "0.1", "1"])
+    axes.set_yticks([0, 0.5, 1], ["0", "0.5", "1"])
+    axes.legend(loc="lower right")
+
+
+def caption(found: tuple[Zenith, Azimuth]) -> str:
+    zenith, azimuth = found
+    mean = significant(azimuth.printed_mean[0], 2)
+    low, *_, high = zenith.curves
+    return (
+        "The directional factors in logarithmic polar coordinates, with 0.001 in the centre and 100 at the rim. Above, "
+        "as the paper drew it: Z over the angle to the normal, and A over the azimuth. Beside them what the paper did "
+        "not show. Z, which is pi times the GGX distribution with alpha^2 = r, takes the place of Beckmann's function: "
+        "both are 1/r at the normal, where Z falls faster at first and has the longer tail. Their difference, in parts "
+        f"of 1/r, is at worst {percent(low.worst[1])} for r = 0.01 and {percent(high.worst[1])} for r = 1, where Z is "
+        "the constant 1. A as printed has the mean over the azimuth that Eq. 27 asks for, 1, at p = 1 alone, and "
+        f"{mean} at p = 0.01; its square keeps Eq. 27 for every p."
+    )

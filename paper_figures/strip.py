@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from paper_figures import style
 from paper_figures.style import percent
 from ratfit.plot.error import draw_error_curve
 from ratfit.plot.style import SERIES
@@ -25,23 +26,12 @@ def draw_strip(axes: Axes, curves: Sequence[Curve], title: str, over: Sequence[N
     along = over or [curve.places for curve in curves]
     for curve, places, (colour, dashes) in zip(curves, along, SERIES, strict=False):
         worst = draw_error_curve(axes, places, curve.errors, colour=colour, dashes=dashes)
-        line = axes.lines[-2]  # the last is the mark of the worst point
-        line.set_label(percent(worst.error))
-    _restyle(axes)
-    axes.set_title(title, loc="left")
-    axes.legend(
-        loc="lower right",
-        bbox_to_anchor=(1, 1),
-        ncols=len(curves),
-        borderaxespad=0,
-        borderpad=0.2,
-        handlelength=2.2,
-        handletextpad=0.4,
-        columnspacing=0.9,
-    )
+        axes.lines[-2].set_label(percent(worst.error))  # the last line is the mark of the worst point
+    thin(axes)
+    style.head(axes, title)
 
 
-def _restyle(axes: Axes) -> None:
+def thin(axes: Axes) -> None:
     """Lines and marks as thin as the figure's others."""
     import matplotlib
 

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from ratfit.plot.style import SERIES
+from ratfit.plot.text import significant
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
 PAGE, COLUMN = 170.0, 85.0
 """Widths in mm: of a page's text, and of one of its two columns."""
+
+NARROW = 120.0
+"""Below this width in mm there is no room for everything in one line."""
 
 INK, GRID = "#000000", "#D8D8D8"
 
@@ -56,8 +59,9 @@ def settings(width: float) -> dict[str, Any]:
         "grid.color": GRID,
         "grid.linewidth": 0.5 * thin,
         "legend.frameon": False,
-        "legend.handlelength": 3.0,
-        "legend.columnspacing": 1.6,
+        "legend.handlelength": 3.0 if width > NARROW else 2.4,
+        "legend.handletextpad": 0.6,
+        "legend.columnspacing": 1.6 if width > NARROW else 1.0,
         "figure.facecolor": "white",  # on a dark page too, where black ink would not be seen
         "svg.hashsalt": "ratfit",  # equal figures give equal files
         "svg.fonttype": "path",
@@ -78,6 +82,17 @@ def sheet(width: float, height: float) -> Iterator[Figure]:
         figure.draw_without_rendering()  # what is made on first drawing, ticks of polar axes say, has this look too
 
 
+def is_narrow(axes: Axes) -> bool:
+    """Whether axes are about as wide as a column, before the layout has made room for what stands around them."""
+    figure = axes.figure
+    return 25.4 * figure.get_figwidth() * axes.get_subplotspec().get_position(figure).width < 0.75 * NARROW
+
+
+def family(name: str, values: Sequence[float]) -> list[str]:
+    """The entries of a legend: the name stands at the first value alone."""
+    return [f"${name} = {value:g}$" if n == 0 else f"${value:g}$" for n, value in enumerate(values)]
+
+
 def draw_family(axes: Axes, labels: Sequence[str], places: Sequence[Any], heights: Sequence[Any]) -> None:
     """Curves of one family on the same axes, each with a colour and dashes of its own."""
     for label, x, y, (colour, dashes) in zip(labels, places, heights, SERIES, strict=False):
@@ -90,31 +105,36 @@ def share_legend(figure: Figure, axes: Axes) -> None:
     figure.legend(handles, labels, loc="outside upper center", ncols=len(labels))
 
 
-def percent(fraction: float, digits: int = 2) -> str:
-    """A fraction as percent with its sign: "+7.5 %"; digits beyond those are no reader's."""
-    from ratfit.plot.style import significant
+def head(axes: Axes, title: str) -> None:
+    """The title of an error strip at its left, and the legend of its lines at its right: above the data, in a narrow
+    figure beneath each other."""
+    import matplotlib
 
-    return f"{'+' if fraction > 0 else ''}{significant(100 * fraction, digits)} %"
-
-
-def mirrored(values: NDArray, sign: int = 1) -> NDArray:
-    """An array that begins at an axis of symmetry, with its mirror image before it; -1 for odd ones, as angles."""
-    import numpy as np
-
-    return np.concatenate([sign * values[:0:-1], values])
-
-
-def sector(axes: Axes, degrees: int) -> None:
-    """Polar axes around the vertical, open to both sides by so many degrees."""
-    axes.set_theta_zero_location("N")
-    axes.set_theta_direction(-1)
-    axes.set_thetalim(-math.radians(degrees), math.radians(degrees))
-    ticks = range(-degrees, degrees + 1, 30)
-    axes.set_xticks([math.radians(tick) for tick in ticks], [f"{abs(tick)}°" for tick in ticks])
-    axes.tick_params(axis="x", pad=0)
+    size, is_tight = matplotlib.rcParams["axes.titlesize"], is_narrow(axes)
+    axes.set_title(title, loc="left", pad=1.8 * size if is_tight else matplotlib.rcParams["axes.titlepad"])
+    axes.legend(
+        loc="lower right",
+        bbox_to_anchor=(1, 1),
+        ncols=len(axes.get_legend_handles_labels()[1]),
+        borderaxespad=0,
+        borderpad=0.2,
+        handlelength=2.0 if is_tight else 2.3,
+        handletextpad=0.4,
+        columnspacing=0.6 if is_tight else 0.9,
+    )
 
 
-def decades(axes: Axes, low: int, high: int) -> None:
-    """Polar axes whose radius is a decimal logarithm, from a centre at 10**low to 10**high."""
-    axes.set_rlim(low, high + 0.1)
-    axes.set_rticks(range(low + 1, high + 1), [f"{10.0**power:g}" for power in range(low + 1, high + 1)])
+def unit_ticks(axis: Axis, step: float) -> None:
+    """Ticks from 0 to 1, none with more digits than it needs."""
+    ticks = [step * n for n in range(round(1 / step) + 1)]
+    axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
+
+
+def percent(fraction: float) -> str:
+    """A signed fraction as percent, "+7.5 %"; two digits, for it is known at the points drawn alone."""
+    return f"{'+' if fraction > 0 else ''}{share(fraction)}"
+
+
+def share(fraction: float) -> str:
+    """The same without the sign of what is positive."""
+    return f"{significant(100 * fraction, 2)} %"

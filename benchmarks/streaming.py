@@ -31,7 +31,7 @@ SETTINGS = {
     "eq12": ({}, None), "eq15": ({}, "glass"), "eq19": ({"m": 0.25}, None), "eq21": ({"m": 0.25}, None),
 }  # fmt: skip
 SAMPLES = 1_000_000
-SIZES = {"one array": SAMPLES, "chunks": 2**18, "rows": LANES}
+FORMS = {"one array": (SAMPLES, False), "chunks": (2**18, False), "rows": (LANES, False), "drawn first": (LANES, True)}
 BAR, LONG_BAR, MEMORY_BAR = 2.0, 1.1, 300
 
 
@@ -69,10 +69,10 @@ def verdict(value: float, bar: float) -> str:
 def print_row(name: str, place: Setting, rounds: int) -> None:
     """One equation: the peer in its quickest form, and eps without and with quantiles."""
     plain, full = (pass_of(place, "uniform", "float32", quantiles) for quantiles in (False, True))
-    runs = {form: peer(plain, place, size) for form, size in SIZES.items()}
+    runs = {form: peer(plain, place, *how) for form, how in FORMS.items()}
     runs |= {"plain": eps(plain, place), "full": eps(full, place)}
     times = medians(runs, rounds)
-    best = min(SIZES, key=times.__getitem__)
+    best = min(FORMS, key=times.__getitem__)
     ratios = [times[kind] / times[best] for kind in ("plain", "full")]
     shown = (
         f"{1e3 * times[best]:8.2f} ({best})".ljust(22) + f"{1e3 * times['plain']:8.2f}{ratios[0]:7.2f}{ratios[1]:16.2f}"
@@ -98,7 +98,7 @@ def eps(what: Pass, place: Setting) -> Callable[[], Any]:
     return lambda: stream(what, place, SAMPLES, 0, Watch())
 
 
-def peer(what: Pass, place: Setting, size: int) -> Callable[[], Any]:
+def peer(what: Pass, place: Setting, size: int, first: bool) -> Callable[[], Any]:
     """Drawing, fit and reference, so many samples at a time; both results are kept."""
     fit, exact = (kernel(program, what.varying) for program in (what.fit, what.exact))
     constants = fit.constants(place.values, what.dtype), exact.constants(place.values, "float64")
@@ -107,16 +107,27 @@ def peer(what: Pass, place: Setting, size: int) -> Callable[[], Any]:
     mesh = jax.make_mesh((devices,), ("devices",), (AxisType.Auto,), devices=jax.devices()[:devices])
     each, whole = PartitionSpec("devices"), PartitionSpec()
 
-    def evaluated(start: Any, seed: Any, ends: Any, constants: Any) -> tuple[Any, Any]:
-        points = drawing(what.sampling, what.dtype)(seed, start + jnp.arange(size, dtype=jnp.uint64), ends)
-        return fit.function(*points, *constants[0]), exact.function(
-            *(point.astype(jnp.float64) for point in points), *constants[1]
-        )
+    def drawn(start: Any, seed: Any, ends: Any) -> Any:
+        return drawing(what.sampling, what.dtype)(seed, start + jnp.arange(size, dtype=jnp.uint64), ends)
 
-    def all_of_them(starts: Any, *given: Any) -> tuple[Any, Any]:
-        return (
-            jax.lax.map(lambda start: evaluated(start, *given), starts) if parts > 1 else evaluated(starts[0], *given)
-        )
+    def evaluated(points: Any, wide: Any, constants: Any) -> tuple[Any, Any]:
+        return fit.function(*points, *constants[0]), exact.function(*wide, *constants[1])
+
+    def widened(points: Any) -> Any:
+        return [point.astype(jnp.float64) for point in points]
+
+    def all_of_them(starts: Any, seed: Any, ends: Any, constants: Any) -> tuple[Any, Any]:
+        if parts == 1:
+            points = drawn(starts[0], seed, ends)
+            return evaluated(points, widened(points), constants)
+        if not first:
+            return jax.lax.map(lambda start: evaluated(*both(drawn(start, seed, ends)), constants), starts)
+        points = jax.lax.map(lambda start: drawn(start, seed, ends), starts)
+        wide = jax.lax.map(widened, points)
+        return jax.lax.map(lambda given: evaluated(*given, constants), (points, wide))
+
+    def both(points: Any) -> tuple[Any, Any]:
+        return points, widened(points)
 
     shared = jax.shard_map(
         all_of_them, mesh=mesh, in_specs=(each, whole, whole, whole), out_specs=each, check_vma=False

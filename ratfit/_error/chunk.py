@@ -17,19 +17,19 @@ from ratfit._kernel import Program, kernel
 from ratfit._sampling import drawing
 from ratfit._setting import Setting
 
-CHUNK = 2**18
+CHUNK = 2**16
 """Samples that are added up together: fixed, because the totals of a chunk depend on it in their last bits."""
 
-LANES = 2**12
+LANES = 2**13
 """Samples in a row, whose arrays stay in the innermost caches; fixed for the same reason."""
 
 GROUP = 64
 """Samples that are added up plainly, one after the other, before sums are added with their rounding errors."""
 
 # What is counted, added up, and looked for the greatest and the least of.
-COUNTED = ("finite", "nonzero", "known")  # known: the exact value is finite, whatever the fit is
+# `known`: the exact value is finite, whatever the fit is.
 LEFT_OUT = ("nan_fit", "inf_fit", "nan_exact", "inf_exact")
-COUNTS = (*COUNTED, *LEFT_OUT)
+COUNTS = ("finite", "nonzero", "known", *LEFT_OUT)
 SUMS = ("error", "absolute", "square", "relative_signed", "relative", "relative_square", "size", "ulp")
 EXTREMES = ("peak", "highest", "lowest")  # of |exact| and of exact
 WORST = ("absolute", "relative", "ulp")
@@ -68,46 +68,53 @@ def chunk_totals(what: Pass, start: Any, samples: Any, seed: Any, ends: Any, con
     import jax
     import jax.numpy as jnp
 
-    def evaluated(row: Any) -> tuple[Any, Any, Any]:
-        counters = start + row * LANES + jnp.arange(LANES, dtype=jnp.uint64)
-        points = drawing(what.sampling, what.dtype)(seed, counters, ends)
+    def drawn(row: Any) -> tuple[Any, ...]:
+        return drawing(what.sampling, what.dtype)(seed, counters(row), ends)
+
+    def evaluated(row: Any, points: Any, wide: Any) -> tuple[Any, Any, Any]:
         fit = kernel(what.fit, what.varying).function(*points, *constants[0])
-        exact, low = _exact(what, [point.astype(jnp.float64) for point in points], constants[1])
+        exact, low = _exact(what, wide, constants[1])
         # Beyond the last sample the exact function is nan and the fit is not: no sum sees such a sample.
-        inside = counters < samples
+        inside = counters(row) < samples
         return jnp.where(inside, fit, 0), jnp.where(inside, exact, jnp.nan), low
 
-    # The end of a loop is what XLA respects: without one, every result would compute the functions for itself.
-    values = jax.lax.map(evaluated, jnp.arange(CHUNK // LANES, dtype=jnp.uint64))
+    def counters(row: Any) -> Any:
+        return start + row * LANES + jnp.arange(LANES, dtype=jnp.uint64)
+
+    # The end of a loop is what XLA respects: without one, both functions would draw for themselves, and every result
+    # compute the functions for itself. A loop over two widths of numbers can be vectorised badly: hence the second.
+    rows = jnp.arange(CHUNK // LANES, dtype=jnp.uint64)
+    points = jax.lax.map(drawn, rows)
+    wide = jax.lax.map(lambda row: [point.astype(jnp.float64) for point in row], points)
+    values = jax.lax.map(lambda given: evaluated(*given), (rows, points, wide))
     fit, exact = (each.reshape(-1, GROUP) for each in values[:2])
     low = None if values[2] is None else values[2].reshape(-1, GROUP)
-    errors = _errors(fit, exact, low, what.dtype)
-    groups = _reduced(errors)
+    whole = _summary(fit, exact, low, what.dtype, complete=True)
+    # A sum of the errors that is finite has met no nan and no infinity: most chunks need no mask.
+    found = jax.lax.cond(
+        jnp.isfinite(whole["sums"][SUMS.index("absolute"), 0]),
+        lambda: whole,
+        lambda: _summary(fit, exact, low, what.dtype, complete=False),
+    )
+    beyond = jnp.clip(start.astype(jnp.int64) + CHUNK - samples.astype(jnp.int64), 0, CHUNK)
+    found["nan_exact"] = jnp.maximum(found["nan_exact"] - beyond, 0)
+    for name in WORST:
+        found[f"counter_{name}"] = start + found[f"counter_{name}"]
+    return found | (_histograms(_errors(fit, exact, low, what.dtype, complete=False)) if what.quantiles else {})
+
+
+def _summary(fit: Any, exact: Any, low: Any, dtype: str, complete: bool) -> dict[str, Any]:
+    """The totals of groups of samples; `complete` says that all of them are finite, which spares the masks."""
+    import jax.numpy as jnp
+
+    groups = _reduced(_errors(fit, exact, low, dtype, complete))
     found = _folded(groups)
     for name in WORST:
         found[f"worst_{name}"] = jnp.max(groups[f"worst_{name}"])
         group = jnp.argmax(groups[f"worst_{name}"])
-        again = _errors(fit[group], exact[group], None if low is None else low[group], what.dtype)
-        place = group * GROUP + jnp.argmax(_counting(name, again))
-        found[f"counter_{name}"] = start + place.astype(jnp.uint64)
-    beyond = jnp.clip(start.astype(jnp.int64) + CHUNK - samples.astype(jnp.int64), 0, CHUNK)
-    left_out = jax.lax.cond(found["finite"] + beyond == CHUNK, _nothing_left_out, _left_out, fit, exact)
-    found |= dict(zip(LEFT_OUT, left_out, strict=True))
-    found["nan_exact"] = jnp.maximum(found["nan_exact"] - beyond, 0)
-    return found | (_histograms(errors) if what.quantiles else {})
-
-
-def _left_out(fit: Any, exact: Any) -> Any:
-    """How many samples of a chunk are nan or infinite: looked at only where there are such."""
-    import jax.numpy as jnp
-
-    return jnp.stack([jnp.sum(test(values)) for values in (fit, exact) for test in (jnp.isnan, jnp.isinf)])
-
-
-def _nothing_left_out(fit: Any, exact: Any) -> Any:
-    import jax.numpy as jnp
-
-    return jnp.zeros(len(LEFT_OUT), jnp.int64)
+        again = _errors(fit[group], exact[group], None if low is None else low[group], dtype, complete)
+        found[f"counter_{name}"] = (group * GROUP + jnp.argmax(_counting(name, again))).astype(jnp.uint64)
+    return found
 
 
 def _exact(what: Pass, points: list[Any], constants: Any) -> tuple[Any, Any]:
@@ -141,18 +148,20 @@ def _in_double_double(what: Pass) -> Callable[[Any], Any]:
     return halves
 
 
-def _errors(fit: Any, exact: Any, low: Any, dtype: str) -> dict[str, Any]:
-    """The errors of a row, sample by sample; 0 where one is not defined."""
+def _errors(fit: Any, exact: Any, low: Any, dtype: str, complete: bool) -> dict[str, Any]:
+    """The errors of samples, one by one; 0 where one is not defined."""
     import jax.numpy as jnp
 
     fitted = fit.astype(jnp.float64)
-    known = jnp.isfinite(exact)
-    finite = known & jnp.isfinite(fitted)
+    known = jnp.ones(exact.shape, bool) if complete else jnp.isfinite(exact)
+    finite = known if complete else known & jnp.isfinite(fitted)
     nonzero = finite & (exact != 0)
     size = jnp.where(known, jnp.abs(exact), 0)
     error = jnp.where(finite, fitted - exact if low is None else (fitted - exact) - low, 0)
-    relative = jnp.where(nonzero, error / jnp.where(nonzero, exact, 1), 0)
-    kinds = (finite, nonzero, known)
+    relative = jnp.where(nonzero, error / exact, 0)
+    none = jnp.zeros(exact.shape, bool)
+    tests = [(values, test) for values in (fitted, exact) for test in (jnp.isnan, jnp.isinf)]
+    kinds = (finite, nonzero, known, *(none if complete else test(values) for values, test in tests))
     return {
         "finite": finite, "nonzero": nonzero, "known": known, "exact": exact,
         # Each count has a byte of its own, which a group does not fill.
@@ -193,8 +202,7 @@ def _reduced(errors: dict[str, Any]) -> dict[str, Any]:
     import jax
     import jax.numpy as jnp
 
-    terms = {f"sum_{name}": (errors[name], 0.0) for name in SUMS}
-    terms |= {"counts": (errors["counts"], 0), "peak": (errors["size"], 0.0)}
+    terms = {f"sum_{name}": (errors[name], 0.0) for name in SUMS} | {"counts": (errors["counts"], 0)}
     terms |= {"highest": (jnp.where(errors["known"], errors["exact"], -jnp.inf), -jnp.inf)}
     terms |= {"lowest": (jnp.where(errors["known"], errors["exact"], jnp.inf), jnp.inf)}
     terms |= {f"worst_{name}": (_counting(name, errors), -1.0) for name in WORST}
@@ -203,8 +211,11 @@ def _reduced(errors: dict[str, Any]) -> dict[str, Any]:
     def together(one: tuple[Any, ...], other: tuple[Any, ...]) -> tuple[Any, ...]:
         left, right = dict(zip(names, one, strict=True)), dict(zip(names, other, strict=True))
         new = {name: left[name] + right[name] for name in names if name.startswith("sum_") or name == "counts"}
-        new["lowest"] = jnp.minimum(left["lowest"], right["lowest"])
-        new |= {name: jnp.maximum(left[name], right[name]) for name in names if name not in new}
+        # A choice is one instruction; maximum and minimum, which let nan through, are several, and no nan comes here.
+        new["lowest"] = jnp.where(left["lowest"] < right["lowest"], left["lowest"], right["lowest"])
+        for name in names:
+            if name not in new:
+                new[name] = jnp.where(left[name] > right[name], left[name], right[name])
         return tuple(new[name] for name in names)
 
     arrays = tuple(array for array, _ in terms.values())
@@ -254,12 +265,14 @@ def _folded(groups: dict[str, Any]) -> dict[str, Any]:
     """The groups of a chunk as one."""
     import jax.numpy as jnp
 
-    found = {name: jnp.sum((groups["counts"] >> (8 * place)) & 255) for place, name in enumerate(COUNTED)}
+    found = {name: jnp.sum((groups["counts"] >> (8 * place)) & 255) for place, name in enumerate(COUNTS)}
     high = jnp.stack([groups[f"sum_{name}"] for name in SUMS])
     low = jnp.zeros_like(high)
     while high.shape[1] > 1:
         half = high.shape[1] // 2
         high, low = _two_sum((high[:, :half], low[:, :half] + low[:, half:]), high[:, half:])
     found["sums"] = jnp.concatenate([high, low], axis=1)
-    found["extremes"] = jnp.stack([jnp.max(groups["peak"]), jnp.max(groups["highest"]), jnp.min(groups["lowest"])])
+    highest, lowest = jnp.max(groups["highest"]), jnp.min(groups["lowest"])
+    peak = jnp.maximum(jnp.maximum(highest, -lowest), 0)  # 0 where no exact value is known
+    found["extremes"] = jnp.stack([peak, highest, lowest])
     return found

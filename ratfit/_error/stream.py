@@ -18,7 +18,7 @@ from ratfit._kernel import Program, kernel, precision
 from ratfit._sampling import bounds
 from ratfit._setting import Setting
 
-CHUNKS = 8
+CHUNKS = 32
 """The most chunks that a device takes at once: some tenths of a second, after which one hears how far it is."""
 
 SAVED = 10.0
@@ -70,8 +70,9 @@ def _parts(what: Pass, place: Setting, samples: int, seed: int, done: int) -> It
     run, devices = _compiled(what), _devices()
     chunks = -(-samples // CHUNK)
     size = devices * min(CHUNKS, -(-chunks // devices))
-    constants = (kernel(what.fit, what.varying).constants(place.values, what.dtype), _constants_of_exact(what, place))
-    given = (np.uint64(samples), np.uint64(seed), bounds(place, what.dtype), constants)
+    constants = kernel(what.fit, what.varying).constants(place.values, what.dtype), _constants_of_exact(what, place)
+    # Few arrays: each takes its time to reach the devices.
+    given = np.array([samples, seed], np.uint64), np.array(bounds(place, what.dtype)), *map(np.array, constants)
     waiting = None
     with precision("float64"), np.errstate(over="ignore"):  # constants of the fit may leave the dtype under test
         for first in range(done, chunks, size):
@@ -119,8 +120,9 @@ def _compiled(what: Pass) -> Callable[..., dict[str, Any]]:
     mesh = jax.make_mesh((_devices(),), ("devices",), (AxisType.Auto,))
     each, whole = PartitionSpec("devices"), PartitionSpec()
 
-    def local(starts: Any, samples: Any, seed: Any, ends: Any, constants: Any) -> dict[str, Any]:
-        found = jax.lax.map(lambda start: chunk_totals(what, start, samples, seed, ends, constants), starts)
+    def local(starts: Any, numbers: Any, ends: Any, *constants: Any) -> dict[str, Any]:
+        samples, seed = numbers
+        found = jax.lax.map(lambda start: chunk_totals(what, start, samples, seed, list(ends), constants), starts)
         return {n: part.sum(axis=0, keepdims=True) if n.endswith("_bins") else part for n, part in found.items()}
 
     shared = jax.shard_map(local, mesh=mesh, in_specs=(each, *[whole] * 4), out_specs=each, check_vma=False)

@@ -83,30 +83,25 @@ def of_chunks(found: Mapping[str, Any]) -> Totals:
 
     The histograms are summed over the chunks already; there may be none.
     """
-    total = NOTHING
-    for place in range(len(found["extremes"])):
-        sums = zip(SUMS, found["sums"][place].tolist(), strict=True)
-        worst = {name: (float(found[f"worst_{name}"][place]), int(found[f"counter_{name}"][place])) for name in WORST}
-        total += Totals(
-            {name: int(found[name][place]) for name in COUNTS},
-            {name: _units(high, low) for name, (high, low) in sums},
-            dict(zip(EXTREMES, found["extremes"][place].tolist(), strict=True)),
-            worst,
-            NOTHING.bins,
-        )
+    sums = {name: _units(found["sums"][:, place].ravel().tolist()) for place, name in enumerate(SUMS)}
+    peaks, highest, lowest = found["extremes"].T
+    extremes = {"peak": float(peaks.max()), "highest": float(highest.max()), "lowest": float(lowest.min())}
+    counts = {name: int(found[name].sum()) for name in COUNTS}
     bins = {name: _sparse(found[f"{name}_bins"]) if f"{name}_bins" in found else {} for name in BINNED}
-    return total + Totals(NOTHING.counts, NOTHING.sums, NOTHING.extremes, NOTHING.worst, bins)
+    return Totals(counts, sums, extremes, {name: _worst(found, name) for name in WORST}, bins)
 
 
-def _units(high: float, low: float) -> int | None:
-    if not math.isfinite(high) or not math.isfinite(low):
+def _worst(found: Mapping[str, Any], name: str) -> tuple[float, int]:
+    first = int(found[f"worst_{name}"].argmax())  # chunks are in the order of their counters
+    return float(found[f"worst_{name}"][first]), int(found[f"counter_{name}"][first])
+
+
+def _units(values: list[float]) -> int | None:
+    """The sum of some floats; None where one is not finite."""
+    if not all(map(math.isfinite, values)):
         return None
-    return _whole(high) + _whole(low)
-
-
-def _whole(value: float) -> int:
-    numerator, denominator = value.as_integer_ratio()
-    return numerator << (UNIT + 1 - denominator.bit_length())
+    ratios = map(float.as_integer_ratio, values)
+    return sum(numerator << (UNIT + 1 - denominator.bit_length()) for numerator, denominator in ratios)
 
 
 def _sum(one: int | None, other: int | None) -> int | None:

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ratfit._condition import AbstractPointCondition, Equation, Integral, Limit
+from ratfit._condition import AbstractPointCondition, Equation, Integral, Limit, describe
 from ratfit._fit import Checked, Fit
 from ratfit._problem import Problem
 from ratfit.plot.curves import FitCurves
 from ratfit.plot.marks import Marker, Window, draw_asymptote, draw_point, draw_pole, draw_tangent, room_between
-from ratfit.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE
-from ratfit.plot.text import on_a_line, plain, text_width
+from ratfit.plot.style import BLACK, BLUE, GREEN, GREY, LETTERS, ORANGE
+from ratfit.plot.text import on_a_line, plain, shortened, text_width
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 KINDS = ("value", "slope", "derivative", "limit", "pole", "integral", "equation")
 """The entries below a picture, in order."""
 
-WIDEST = 430
-"""Points that an entry may take."""
+WIDEST = 340
+"""Points that an entry may take: no more than the axes above it."""
 
 ARROW = r"\to"
 
@@ -63,6 +63,8 @@ def draw_conditions(page: Page, fit: Fit) -> list[Any]:
     found: dict[str, tuple[Any, list[str]]] = {}
     for checked in fit.conditions:
         kind, text = _kind(checked, fit.problem.variable), _text(checked, fit)
+        if text_width(text, 9) > WIDEST - 50:
+            text = plain(f"{describe(checked.condition)} = {checked.demand}")
         handle = _draw(page, fit, checked, kind) or said("")
         found.setdefault(kind, (handle, []))[1].append(text)
     for kind, (handle, texts) in found.items():
@@ -200,7 +202,7 @@ def _math(expression: sp.Expr) -> str:
 
 def _entry(kind: str, texts: Sequence[str]) -> str:
     """As many of the texts as fit on a line."""
-    text = f"{kind}: {texts[0]}"
+    text = f"{kind}: {texts[0] if '$' in texts[0] else shortened(texts[0], LETTERS - 10)}"
     for more in dict.fromkeys(texts[1:]):
         longer = f"{text}, {more}"
         if text_width(longer, 9) > WIDEST:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import numbers
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,6 +17,7 @@ from ratfit._problem import Problem
 from ratfit._setting import Setting, setting
 from ratfit._target import Target, sample_values
 from ratfit.gallery import card, is_card
+from ratfit.plot.error import ROUNDING
 from ratfit.plot.style import SERIES
 from ratfit.plot.text import significant
 from ratfit.plot.view import CUTS, broken, cut, is_pole
@@ -113,7 +113,9 @@ def curves_of(fit: Fit, parameters: Parameters | None, reference: str | None) ->
     are left out a gallery problem has its card's settings. Raises RatfitError where there is no fit, for a coefficient
     that is still free, an unknown name and a value outside its range.
     """
-    fit.chosen  # noqa: B018  # says why there is no fit, before anything else is looked at
+    free = sorted(s.name for s in fit.chosen.free_symbols & set(fit.free))
+    if free:
+        raise RatfitError(f"still free: {', '.join(free)}; choose a value, in [choice] or with --set {free[0]}=...")
     has_exact = reference is not None or fit.problem.target is not None
     # A fit without an exact function is held against itself: its parameters are checked as those of any other.
     compared = fit if has_exact else replace(fit, problem=_with_target(fit))
@@ -173,7 +175,7 @@ def _settings(problem: Problem, parameters: Parameters | None, reference: str | 
     if parameters is None and (settings := _settings_of_card(problem)):
         return [{name: float(value) for name, value in each.items() if name not in given} for each in settings]
     asked = dict(parameters or {})
-    families = [name for name, value in asked.items() if not isinstance(value, (numbers.Real, sp.Expr, str))]
+    families = [name for name, value in asked.items() if isinstance(value, Iterable) and not isinstance(value, str)]
     if len(families) > 1:
         raise RatfitError(f"a picture has one family of curves: give {' or '.join(families)} one value")
     for parameter in problem.parameters:
@@ -182,7 +184,11 @@ def _settings(problem: Problem, parameters: Parameters | None, reference: str | 
     values = list(asked[families[0]]) if families else []  # type: ignore[arg-type]
     if families and not 1 <= len(values) <= MOST:
         raise RatfitError(f"{families[0]} has {len(values)} values: a picture holds 1 to {MOST} curves")
-    return [{**asked, families[0]: value} for value in values] if families else [asked]
+    found = [{**asked, families[0]: value} for value in values] if families else [asked]
+    for name, value in (pair for each in found for pair in each.items()):
+        if isinstance(value, str):
+            raise RatfitError(f"{name} = {value!r}: a picture is drawn at numbers; give one, or a list of them")
+    return found
 
 
 def _settings_of_card(problem: Problem) -> tuple[Mapping[str, sp.Expr], ...]:
@@ -239,4 +245,6 @@ def _worst(place: Setting, side: int, start: float) -> float:
     values = tuple(place.values.values())
     exact, fit = (lower(e, (place.variable, *place.values))(there, *values) for e in (place.exact, place.formula))
     off = np.nan_to_num(abs(fit - exact), nan=0.0, posinf=0.0)
-    return float(there[off.argmax()]) if off.argmax() < len(off) - 1 else start
+    worst = off.argmax()
+    is_inside = worst < len(off) - 1 and off[worst] > ROUNDING * abs(exact[worst])
+    return float(there[worst]) if is_inside else start

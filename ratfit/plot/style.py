@@ -6,9 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from ratfit.plot.text import mathematics as mathematics
-from ratfit.plot.text import significant as significant
-from ratfit.plot.text import text_width
+from ratfit.plot.text import mathematics, significant, text_width  # noqa: F401  # names for figures elsewhere
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,7 +47,7 @@ LETTERS = 62
 """Letters of an entry below a picture."""
 
 
-_BESIDE = 380
+_BESIDE = 350
 """Points that the texts of two columns may take together."""
 
 _ROW = 0.2

@@ -48,6 +48,7 @@ class _OnALine(LatexPrinter):
 def _settable(written: str) -> str | None:
     from matplotlib.mathtext import MathTextParser
 
+    written = written.replace(r"\left|", "|").replace(r"\right|", "|")  # matplotlib's growing bars are too small
     try:
         MathTextParser("path").parse(f"${written}$")
     except ValueError:  # cases, and other environments of LaTeX

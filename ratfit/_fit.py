@@ -10,7 +10,7 @@ from typing import Any
 
 import sympy as sp
 
-from ratfit._condition import AbstractCondition, describe
+from ratfit._condition import AbstractCondition
 from ratfit._parse import RatfitError, nearest
 from ratfit._problem import Problem
 from ratfit._problem_text import form_table
@@ -34,19 +34,6 @@ class Checked:
     demand: sp.Expr
     holds: bool | None
     residual: float | None
-
-    def to_json_object(self) -> dict[str, Any]:
-        """The object of `derive --format json`: with `words` where kind and place leave something unsaid."""
-        kind, place, words = self.condition.kind, self.condition.place, describe(self.condition)
-        is_said = words in (f"{kind} at {place}", f"{kind} with {place}")
-        return {
-            "kind": kind,
-            "at": place,
-            "equals": str(self.demand),
-            "holds": self.holds,
-            "residual": self.residual,
-            **({} if is_said else {"words": words}),
-        }
 
 
 @dataclass(frozen=True)
@@ -213,7 +200,16 @@ class Fit:
             "free": [{"name": str(s), "range": [str(low), str(high)]} for s, (low, high) in self.free.items()],
             "choice": {str(s): str(v) for s, v in self.choice.items()},
             "route": self.route,
-            "conditions": [c.to_json_object() for c in self.conditions],
+            "conditions": [
+                {
+                    "kind": c.condition.kind,
+                    "at": c.condition.place,
+                    "equals": str(c.demand),
+                    "holds": c.holds,
+                    "residual": c.residual,
+                }
+                for c in self.conditions
+            ],
             "rejected": [
                 *({"expression": str(c.expression), "reason": c.reason} for c in self.rejected),
                 *({"expression": None, "reason": reason} for reason in self.reasons),

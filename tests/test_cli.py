@@ -431,6 +431,9 @@ def test_a_finished_row_leaves_no_state_and_nothing_to_compare_is_no_success(run
     for name, path in (("eq12", rows), ("arctan", others)):
         assert run("bench", name, "--samples", "1000", "--backend", "none", "--out", str(path))[0] == 0
     assert not list(tmp_path.glob("*.part"))
+    (tmp_path / "rows.jsonl.part").write_text("a film, half downloaded")
+    _, _, told = run("bench", "eq12", "--samples", "1000", "--backend", "none", "--out", str(rows), "--resume")
+    assert told.count("rows.jsonl.part is a file of something else") == 1
     status, out, _ = run("bench", "eq12", "--samples", "1000", "--backend", "none", "--against", str(others))
     assert status == 1 and "nothing could be compared" in out
 

@@ -29,6 +29,7 @@ from ratfit._record import (
     drop_checkpoint,
     machine,
     merge,
+    no_checkpoint,
     read_checkpoint,
     read_rows,
     same_measurement,
@@ -489,6 +490,16 @@ def test_a_checkpoint_torn_at_any_byte_is_none_and_can_be_written_again(tmp_path
 def test_a_file_that_is_no_checkpoint_holds_no_state(content, tmp_path):
     (tmp_path / "rows.jsonl.part").write_bytes(content)
     assert read_checkpoint(tmp_path / "rows.jsonl", KEY) is None
+    assert "is a file of something else" in no_checkpoint(tmp_path / "rows.jsonl") or content.startswith(b'{"key": ')
+
+
+def test_what_is_no_state_is_told_and_a_state_is_not(tmp_path):
+    out, place = tmp_path / "rows.jsonl", tmp_path / "rows.jsonl.part"
+    assert no_checkpoint(out) == ""
+    write_checkpoint(out, KEY, {"done": 1})
+    assert no_checkpoint(out) == ""
+    place.write_bytes(place.read_bytes()[:-3])
+    assert "rows.jsonl.part is torn" in no_checkpoint(out)
 
 
 def test_somebody_elses_file_in_the_place_of_a_checkpoint_stays(tmp_path):

@@ -15,10 +15,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-import sympy as sp
 from report_rows import HOSTILE, MACHINE, PUBLISHED, curve, full_rows, row, smith_fit
 
-from ratfit import Checked, Derivative, Equation
+import ratfit
 from ratfit._parse import RatfitError
 from ratfit.report import document as nouns
 from ratfit.report.cost_figure import Point, cost_figure
@@ -38,6 +37,7 @@ from ratfit.report.measured import (
     speed_remarks,
 )
 from ratfit.report.records import document_of, run_report, write_report
+from ratfit.report.text import recorded
 from ratfit.report.write import write_document
 
 VOID = {"meta", "img", "br", "hr", "input", "link"}
@@ -253,12 +253,11 @@ def test_a_problem_without_a_name_is_titled_by_its_target():
     assert [section.title for section in document_of(rows).sections] == ["sin(x)", "sin(x) (2)", "x" * 36 + " ..."]
 
 
-def test_a_condition_that_kind_and_place_do_not_tell_is_put_in_words():
-    equation = Checked(Equation("y' - y", 0, order=2), sp.S.Zero, True, 0.0).to_json_object()
-    assert equation["words"] == "equation -y + y' at 0 to order 2"
-    assert "words" not in Checked(Derivative(0), sp.S.One, True, 0.0).to_json_object()
-    fit = smith_fit() | {"conditions": [equation]}
-    assert "equation -y + y&#39; at 0 to order 2" in to_html(document_of([row(fit=fit)]))
+def test_conditions_are_put_in_words():
+    words = [condition["words"] for condition in recorded(ratfit.derive("sin-ode"))["conditions"]]
+    assert any(text.startswith("equation ") and " to order " in text for text in words), words
+    page = to_html(document_of([row(fit=recorded(ratfit.derive("sin-ode")))]))
+    assert all(html.escape(text, quote=True).replace("&#x27;", "&#39;") in page for text in words)
 
 
 def test_a_row_that_is_there_twice_counts_once():

@@ -1,6 +1,7 @@
 """Measured rows: what one holds, and how rows survive interruption, go on, come together and are compared."""
 
 from ratfit._record.checkpoint import drop_checkpoint as drop_checkpoint
+from ratfit._record.checkpoint import no_checkpoint as no_checkpoint
 from ratfit._record.checkpoint import read_checkpoint as read_checkpoint
 from ratfit._record.checkpoint import write_checkpoint as write_checkpoint
 from ratfit._record.compare import Change as Change

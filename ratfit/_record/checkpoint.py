@@ -46,6 +46,17 @@ def drop_checkpoint(out: str | os.PathLike[str]) -> None:
             _place(out).unlink(missing_ok=True)
 
 
+def no_checkpoint(out: str | os.PathLike[str]) -> str:
+    """Why the file in the place of a state holds none; nothing where it holds one, and where there is no file."""
+    place = _place(out)
+    with explained(place):
+        if not place.exists() or _parsed(place.read_bytes()) is not None:
+            return ""
+        if _is_own(out):
+            return f"{place} is torn: the row whose state it was is begun again"
+        return f"{place} is a file of something else, no state to go on from: move it, or name another --out file"
+
+
 def _place(out: str | os.PathLike[str]) -> Path:
     return Path(f"{os.fspath(out)}.part")
 

@@ -13,7 +13,7 @@ from ratfit._record.machine import machine
 
 Row = dict[str, Any]
 
-PROTOCOL = 2
+PROTOCOL = 3
 """The meaning of a row's numbers and samples: changed whenever a number of the same name would mean something else."""
 
 
@@ -29,8 +29,9 @@ class Record:
     `parameters` is name -> value, or the pair (low, high) of one that is drawn at random; `epsilon` is definition ->
     fraction; `worst` is `{definition, at}`; times are in seconds for one call on all samples; None is what was not
     measured or not finite. The further ones make the row stand for itself: `formula` is a tag of what was measured,
-    `fit` what `Fit.to_json_object()` gives, `command` what makes this row again, `counts` how many samples were
-    `nan_fit, inf_fit, nan_exact, inf_exact`, `curve` the error over the domain, `published` the source's own formula.
+    `fit` what `Fit.to_json_object()` gives, with words to its conditions, `command` what makes this row again, `counts`
+    how many samples were `nan_fit, inf_fit, nan_exact, inf_exact`, `curve` the error over the domain, `published` the
+    source's own formula.
     """
 
     name: str

@@ -186,9 +186,9 @@ def _backends(asked: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _about(fit: Fit, shown: Card | None, command: str) -> Any:
-    from ratfit.report.text import published_object
+    from ratfit.report.text import published_object, recorded
 
-    about = {"fit": fit.to_json_object(), "command": command, "published": published_object(fit, shown)}
+    about = {"fit": recorded(fit), "command": command, "published": published_object(fit, shown)}
     return lambda job: about
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -16,6 +17,7 @@ from ratfit._record import (
     append_row,
     check_resumable,
     drop_checkpoint,
+    no_checkpoint,
     read_checkpoint,
     read_rows,
     same_measurement,
@@ -65,6 +67,8 @@ def _backends(run: Run, job: Job) -> Sequence[str]:
 def _written(run: Run) -> list[Row]:
     """The rows to go on from; a file of something else is refused before the work, not after."""
     held = read_rows(run.out) if run.out and is_first() else []
+    if run.out and is_first() and (remark := no_checkpoint(run.out)):
+        print(f"ratfit: {remark}", file=sys.stderr)
     if not run.resume:
         return []
     every = [asked(job, run.how, backend) for job in run.jobs for backend in _backends(run, job)]

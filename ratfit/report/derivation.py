@@ -48,11 +48,10 @@ def _form(form: dict[str, Any]) -> Text:
 
 
 def _conditions(conditions: Sequence[dict[str, Any]]) -> Table:
-    head = (Column("condition"), Column("at"), Column("equals"), Column("holds"), Column("residual", numeric=True))
+    head = (Column("condition"), Column("equals"), Column("holds"), Column("residual", numeric=True))
     rows = tuple(
         (
-            Cell(c.get("words", c["kind"])),
-            Cell(Code(c["at"])),
+            Cell(c.get("words") or (c["kind"], ": ", Code(c["at"]))),
             Cell(Code(c["equals"])),
             Cell(HOLDS[c["holds"]]),
             _residual(c["residual"]),

@@ -149,6 +149,13 @@ def agreement(fit: Fit, card: Card) -> str:
     return "symbolically equal" if equals_published(fit, card) else "NOT equal to what was derived"
 
 
+def recorded(fit: Fit) -> dict[str, Any]:
+    """A fit as a row has it: the object of `derive --format json`, its conditions with `words` to each."""
+    made = fit.to_json_object()
+    pairs = zip(made["conditions"], fit.conditions, strict=True)
+    return made | {"conditions": [each | {"words": describe(checked.condition)} for each, checked in pairs]}
+
+
 def published_object(fit: Fit, card: Card | None) -> dict[str, Any] | None:
     """What was published of a problem, and whether the fit is that, as a record holds it."""
     if card is None or not card.printed:

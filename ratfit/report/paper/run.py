@@ -41,7 +41,7 @@ from ratfit.report.paper.rows import plan, rows
 from ratfit.report.paper.smith_part import smith_part
 from ratfit.report.paper.text import section_text
 from ratfit.report.progress import progress
-from ratfit.report.text import published_object
+from ratfit.report.text import published_object, recorded
 from ratfit.report.write import write_document
 
 
@@ -152,7 +152,7 @@ def _about(derived: Sequence[Derived], asked: Asked) -> Callable[[Task], Mapping
     """What makes the rows of an equation stand for themselves."""
     command = f"ratfit paper --samples {asked.samples} --seed {asked.seed}"
     known = {
-        each.card.place: {"fit": each.fit.to_json_object(), "published": published_object(each.fit, each.card)}
+        each.card.place: {"fit": recorded(each.fit), "published": published_object(each.fit, each.card)}
         for each in derived
     }
     return lambda task: {"command": command, **known.get(task.place, {})}

@@ -15,6 +15,7 @@ ROOT = Path(ratfit.__file__).parent
 LAYERS = [
     ("_deadline",),
     ("_parse",),
+    ("brdf",),
     ("_multiprecise",),
     ("_target", "_rational_integral", "_pieces", "_condition", "_form"),
     ("_problem", "_problem_file", "_problem_text", "_inline", "_generators", "_field", "_integral", "_series"),

@@ -1,0 +1,20 @@
+"""A formula with its limit in place of 0/0, safe for values and for gradients."""
+
+from collections.abc import Callable
+
+from sympy import Expr, Piecewise
+from sympy.logic.boolalg import Boolean
+
+
+def guarded(formula: Callable[[Expr], Expr], x: Expr, limit: Expr, where: Boolean, harmless: Expr) -> Expr:
+    """formula(x), and limit where the condition holds.
+
+    An array computes both branches, and a gradient multiplies the branch not taken by zero: nan times zero is nan.
+    So where the condition holds the formula is given a harmless value in place of x.
+
+    Arguments: the formula as a function of x; x, a symbol or an expression; its limit; where the limit is taken,
+    a condition; harmless, any value at which formula and its derivative are finite.
+    Returns: an expression.
+    """
+    inside = Piecewise((harmless, where), (x, True))
+    return Piecewise((limit, where), (formula(inside), True))

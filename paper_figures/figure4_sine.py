@@ -53,6 +53,7 @@ def draw(found: Sine, width: float = style.PAGE) -> Figure:
             style.unit_ticks(panels[name].yaxis, 0.25)
         _draw_errors(panels["error"], found)
         _quarter_turn(panels["error"])
+        panels["error"].set_xlabel("$x$")
         panels["true"].set_ylabel("$f(x)$")
     return figure
 

@@ -39,7 +39,7 @@ def draw_sector(axes: Axes, title: str, rim: float, degrees: int, rings: Mapping
             axes.annotate(
                 text,
                 (side * radius * math.sin(down), radius * math.cos(down)),
-                xytext=(0 if degrees == 90 else -3, -2),
+                xytext=(0, -5) if degrees == 90 else (-3, -2),  # clear of the angles at the rim
                 textcoords="offset points",
                 ha="center" if degrees == 90 else "right",
                 va="top",
@@ -88,4 +88,4 @@ def _frame(axes: Axes, title: str, across: tuple[float, float], up: tuple[float,
     axes.set_axis_off()
     for artist in (*axes.lines, *axes.texts):
         artist.set_clip_on(False)
-    axes.set_title(title, pad=1.5 * axes.title.get_fontsize())
+    axes.set_title(title, pad=1.7 * axes.title.get_fontsize())

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+LARGER = 1.2
+"""The words, beside the type of the curves."""
+
+
 @dataclass(frozen=True)
 class Glance:
     """A fit, and its curves beside the exact function for some values of m."""
@@ -57,27 +61,28 @@ def draw(found: Glance, width: float = style.PAGE) -> Figure:
 def _draw_curves(axes: Axes, found: Glance) -> None:
     """The exact functions wide and pale, the fits thin on top of them."""
     for each, label, (colour, dashes) in zip(found.curves, style.family("m", found.values), SERIES, strict=False):
-        axes.plot(each.places, each.exact, color=colour, alpha=0.25, linewidth=5, solid_capstyle="butt")
+        axes.plot(each.places, each.exact, color=colour, alpha=0.25, linewidth=4, solid_capstyle="butt")
         axes.plot(each.places, each.fit, color=colour, linestyle=dashes, label=label)
     axes.set_ylim(0, 1.02)
     style.unit_ticks(axes.yaxis, 0.5)
+    axes.set_ylabel("$G(v)$")
     style.head(axes, "Exact (wide), fit (thin):")
 
 
 def _write(axes: Axes, fit: rf.Fit) -> None:
     """What must stay exact, the formula found, and what it costs: from the fit itself."""
     cost = ", ".join(f"{count} {operation}" for operation, count in fit.cost.as_dict().items() if count)
-    size = axes.title.get_fontsize()
+    size = LARGER * axes.title.get_fontsize()
     down = 0.0
     for text, weight, lines in (
         ("Say what must stay exact:", "bold", 2.0),
         *((f"✓  ${kept}$", "normal", 2.0 + 1.5 * ("frac" in kept)) for kept in _kept(fit)),
-        ("get the cheapest formula that keeps it:", "bold", 2.5),
+        ("get the cheapest formula\nthat keeps it:", "bold", 4.0),
         (f"${mathematics(fit.expression)}$", "normal", 4.5),
-        (f"{cost} a sample", "normal", 2.0),
+        (f"for {cost} a sample", "normal", 2.0),
     ):
         down += lines * size / 2
-        axes.annotate(text, (0, 1), (0, -down), "axes fraction", "offset points", va="center", weight=weight)
+        axes.annotate(text, (0, 1), (0, -down), "axes fraction", "offset points", va="center", weight=weight, size=size)
         down += lines * size / 2
     axes.set_axis_off()
 

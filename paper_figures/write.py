@@ -20,6 +20,7 @@ DOTS = 300
 """Dots an inch of a PNG: what is asked for in print."""
 
 _PATH = re.compile(rb' d="[^"]*"')
+_INDENTATION = re.compile(rb"\n +")
 _DECIMALS = re.compile(rb"-?\d+\.\d{3,}")
 
 
@@ -42,8 +43,9 @@ def write_figure(figure: Figure, caption: str, stem: Path, formats: Sequence[str
 
 
 def _shortened(svg: bytes) -> bytes:
-    """Coordinates of curves to a hundredth of a point: the rest is half of a file, and nothing that an eye sees."""
-    return _PATH.sub(lambda path: _DECIMALS.sub(lambda number: b"%.2f" % float(number[0]), path[0]), svg)
+    """Coordinates of curves to a hundredth of a point, and no indentation: nothing that an eye sees."""
+    rounded = _PATH.sub(lambda path: _DECIMALS.sub(lambda number: b"%.2f" % float(number[0]), path[0]), svg)
+    return _INDENTATION.sub(b"\n", rounded)
 
 
 def _metadata(suffix: str, name: str, caption: str) -> dict[str, Any]:

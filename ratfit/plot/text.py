@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -18,13 +19,21 @@ def plain(text: str) -> str:
     return text.replace("$", r"\$")
 
 
+LONGEST = 80
+"""Operations of a formula that may still fit on a line."""
+
+
 def mathematics(expression: sp.Expr) -> str | None:
-    """An expression as matplotlib sets mathematics, without its dollars; None for what it cannot set."""
+    """An expression as matplotlib sets mathematics, without its dollars; None for a long one and what it cannot set."""
+    if expression.count_ops() > LONGEST:
+        return None
     return _settable(sp.latex(rounded(expression)).replace(r"\frac", r"\dfrac"))
 
 
 def on_a_line(expression: sp.Expr) -> str | None:
     """The same with fractions written as pi/2 is, for a line of text: set upright they would need smaller type."""
+    if expression.count_ops() > LONGEST:
+        return None
     return _settable(_OnALine().doprint(rounded(expression)))
 
 
@@ -46,11 +55,9 @@ class _OnALine(LatexPrinter):
 
 
 def _settable(written: str) -> str | None:
-    from matplotlib.mathtext import MathTextParser
-
     written = written.replace(r"\left|", "|").replace(r"\right|", "|")  # matplotlib's growing bars are too small
     try:
-        MathTextParser("path").parse(f"${written}$")
+        _measured(f"${written}$", 10)
     except ValueError:  # cases, and other environments of LaTeX
         return None
     return written
@@ -73,9 +80,16 @@ def text_depth(text: str, size: float) -> float:
 
 def _measured(text: str, size: float) -> Any:
     from matplotlib.font_manager import FontProperties
+
+    return _parser().parse(text, 72, FontProperties(family="DejaVu Sans", size=size))
+
+
+@lru_cache(maxsize=1)
+def _parser() -> Any:
+    """matplotlib's parser of mathematics: it remembers what it has set, and takes long over what it has not."""
     from matplotlib.mathtext import MathTextParser
 
-    return MathTextParser("path").parse(text, 72, FontProperties(family="DejaVu Sans", size=size))
+    return MathTextParser("path")
 
 
 def significant(number: float, digits: int) -> str:

@@ -84,7 +84,7 @@ def test_a_line_says_by_itself_where_when_and_by_which_rules_it_was_measured():
     line = RECORD.to_line()
     assert line["machine"] == machine()
     assert line["machine"]["versions"]["ratfit"] == ratfit.__version__
-    assert line["protocol"] == PROTOCOL == 2
+    assert line["protocol"] == PROTOCOL
     finished = datetime.fromisoformat(line["finished"])
     assert finished.utcoffset().total_seconds() == 0 and finished.microsecond == 0
     assert 0 <= (datetime.now(UTC) - finished).total_seconds() < 3600
@@ -404,7 +404,7 @@ def test_files_that_can_be_gone_on_from(rows):
 @pytest.mark.parametrize(
     ("row", "text"),
     [
-        ({**ROW, "protocol": 1}, r"rows\.jsonl holds rows of measuring protocol 1, and now it is 2.*another --out"),
+        ({**ROW, "protocol": 1}, rf"rows\.jsonl .* measuring protocol 1, and now it is {PROTOCOL}.*another --out"),
         (of_version(ROW, "0.0.1"), rf"of ratfit 0\.0\.1, and this is {ratfit.__version__}: .*another --out"),
         ({**ROW, "samples": 7}, "smith measured with samples 7, and samples 1000000 is asked.*ask for samples 7 again"),
         ({**ROW, "seed": 7}, "seed 7, and seed 0 is asked"),
@@ -533,7 +533,7 @@ def test_files_are_merged_in_order_and_what_is_there_twice_comes_once(tmp_path):
 def test_files_of_different_protocols_are_not_merged(tmp_path):
     append_row(tmp_path / "new.jsonl", RECORD)
     append_row(tmp_path / "old.jsonl", replace(RECORD, protocol=1))
-    with pytest.raises(RatfitError, match=r"old\.jsonl holds rows of protocol 1, .* of 2.*leave out"):
+    with pytest.raises(RatfitError, match=rf"old\.jsonl holds rows of protocol 1, .* of {PROTOCOL}.*leave out"):
         merge([tmp_path / "new.jsonl", tmp_path / "old.jsonl"])
 
 

@@ -6,28 +6,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ratfit._error import DEFINITIONS
 from ratfit._inline import UNNAMED
 from ratfit._parse import RatfitError, shortened
 from ratfit._record import Row, merge
 from ratfit.report.check import check_row
-from ratfit.report.document import Block, Cell, Code, Column, Details, Document, Facts, Link, Paragraph, Section, Table
+from ratfit.report.document import Block, Cell, Code, Column, Document, Facts, Link, Paragraph, Section, Table
 from ratfit.report.headlines import counts
+from ratfit.report.meaning import meaning
 from ratfit.report.measured import circumstances, count, epsilon_range, gamma_range, name_of
 from ratfit.report.problem_rows import ProblemRows
 from ratfit.report.problem_section import problem_section
-from ratfit.report.write import write_document
-
-EPS = """\
-eps says how far a fit is from the exact function: a fraction (0.0136, not 1.36 %), and never alone, for it depends on \
-its definition, on how the samples are drawn, and on the type that the fit is computed in. The exact function is \
-computed with more precision than the fit, at the very samples. Samples where either is not finite are left out and \
-counted."""
-GAMMA = """\
-gamma is the exact function's time over the fit's (31.8, not 3180 %), measured in turn in one run, with its 95 % \
-interval. The floor is the time of copying the samples; it is not subtracted. A fit that runs at the floor is limited \
-by memory, and its gamma is a lower bound. On the backend cost-model nothing is timed: gamma is a ratio of counted \
-operations, each with a weight."""
+from ratfit.report.write import folder_for, write_document
 
 
 def run_report(paths: Sequence[str], out: str) -> int:
@@ -39,7 +28,8 @@ def run_report(paths: Sequence[str], out: str) -> int:
     rows = merge(paths)
     if not rows:
         raise RatfitError(f"{', '.join(paths)}: no row is in there; measure some with bench --out FILE")
-    written = write_report(rows, _folder(out))
+    with folder_for(out) as folder:
+        written = write_report(rows, folder)
     print(f"wrote {written[0]} and {written[1]}")
     return 0
 
@@ -47,15 +37,6 @@ def run_report(paths: Sequence[str], out: str) -> int:
 def write_report(rows: Sequence[Row], folder: str | Path, name: str = "report") -> tuple[Path, ...]:
     """Writes the page of these rows as `name.html` and `name.md` with figures; returns the paths, pages first."""
     return write_document(document_of(rows), Path(folder), name)
-
-
-def _folder(out: str) -> Path:
-    folder = Path(out)
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise RatfitError(f"--out {out}: no folder can be made there ({error.strerror}); name another") from None
-    return folder
 
 
 def document_of(rows: Sequence[Row]) -> Document:
@@ -72,7 +53,7 @@ def document_of(rows: Sequence[Row]) -> Document:
     problems = tuple(_problems(_once(rows)))
     title = f"{problems[0].title}: accuracy and speed" if len(problems) == 1 else "Fits: accuracy and speed"
     sections = tuple(problem_section(problem) for problem in problems)
-    return Document(title, tuple(_lead(problems)), sections, (_meaning(rows), _making(rows)))
+    return Document(title, tuple(_lead(problems)), sections, (meaning(_definitions(rows)), _making(rows)))
 
 
 def _once(rows: Sequence[Row]) -> list[Row]:
@@ -134,12 +115,8 @@ def _overview_row(problem: ProblemRows) -> tuple[Cell, ...]:
     )
 
 
-def _meaning(rows: Sequence[Row]) -> Section:
-    names = dict.fromkeys(name for row in rows for name in row["epsilon"])
-    head = (Column("definition"), Column("formula"))
-    lines = tuple((Cell(Code(name)), Cell(Code(DEFINITIONS[name]))) for name in names if name in DEFINITIONS)
-    definitions = (Details("Definitions of eps", (Table(head, lines),)),) if lines else ()
-    return Section("What the numbers mean", (Paragraph(EPS), Paragraph(GAMMA), *definitions))
+def _definitions(rows: Sequence[Row]) -> dict[str, None]:
+    return dict.fromkeys(name for row in rows for name in row["epsilon"])
 
 
 def _making(rows: Sequence[Row]) -> Section:

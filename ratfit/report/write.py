@@ -2,13 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+from ratfit._parse import RatfitError
 from ratfit._record import write_text
 from ratfit.report.document import Document
 from ratfit.report.html import to_html
 from ratfit.report.markdown import figure_file, to_markdown
 from ratfit.report.svg import standalone
+
+
+@contextmanager
+def folder_for(out: str | Path) -> Iterator[Path]:
+    """The folder of a command's pages: made before the work, and taken away again if nothing came of it.
+
+    **Fails** with `RatfitError` for a folder that cannot be made.
+    """
+    folder = Path(out)
+    try:
+        is_new = not folder.exists()
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise RatfitError(f"--out {out}: no folder can be made there ({error.strerror}); name another") from None
+    try:
+        yield folder
+    finally:
+        if is_new and not any(folder.iterdir()):
+            folder.rmdir()
 
 
 def write_document(document: Document, folder: Path, name: str) -> tuple[Path, ...]:

@@ -5,29 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from ratfit._error import DEFINITIONS
 from ratfit._record import Row, machine
 from ratfit.report.document import (
     Block,
     Cell,
-    Code,
     Column,
     Details,
     Document,
     Facts,
     Link,
-    Paragraph,
     Section,
     Table,
     Verbatim,
 )
+from ratfit.report.meaning import meaning
 from ratfit.report.measured import gamma_range, number
 from ratfit.report.paper.closest import Finding, closest
 from ratfit.report.paper.closest_part import searched
 from ratfit.report.paper.measurements import PLAIN, Derived
 from ratfit.report.problem_rows import ProblemRows
 from ratfit.report.problem_section import problem_section
-from ratfit.report.records import EPS, GAMMA
 from ratfit.report.tables import definitions_table, rows_table
 
 TITLE = "The approximations of Schlick 1994, derived and measured"
@@ -46,7 +43,7 @@ def document_of(
         Section(part.title, (*part.blocks, *_folded(by_place.get(place, 0), rows.get(place, ()))))
         for place, part in parts.items()
     ]
-    return Document(TITLE, tuple(lead), tuple(sections), (_meaning(), _making()))
+    return Document(TITLE, tuple(lead), tuple(sections), (meaning(), _making()))
 
 
 def _folded(number: int, rows: Sequence[Row]) -> Iterator[Block]:
@@ -96,13 +93,6 @@ def overview(findings: Sequence[Finding], timed: Sequence[Row], titles: Mapping[
             )
         )
     return Table(head, tuple(rows))
-
-
-def _meaning() -> Section:
-    head = (Column("definition"), Column("formula"))
-    lines = tuple((Cell(Code(name)), Cell(Code(formula))) for name, formula in DEFINITIONS.items())
-    definitions = Details("Definitions of eps", (Table(head, lines),))
-    return Section("What the numbers mean", (Paragraph(EPS), Paragraph(GAMMA), definitions))
 
 
 def _making() -> Section:

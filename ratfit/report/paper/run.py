@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ratfit._derive import derive
 from ratfit._error.devices import use_all_cores
-from ratfit._parse import RatfitError
 from ratfit._record import Row, write_text
 from ratfit._sampling import check_protocol
 from ratfit._speed import available
@@ -42,7 +40,7 @@ from ratfit.report.paper.smith_part import smith_part
 from ratfit.report.paper.text import section_text
 from ratfit.report.progress import progress
 from ratfit.report.text import published_object, recorded
-from ratfit.report.write import write_document
+from ratfit.report.write import folder_for, write_document
 
 
 @dataclass(frozen=True)
@@ -68,7 +66,7 @@ def run_paper(asked: Asked) -> int:
     for protocol in (PLAIN, CHECK):  # now, not after minutes
         check_protocol(protocol, asked.samples, asked.seed, DTYPE)
     parts: dict[str, Section] = {}
-    with _folder(asked.out):
+    with folder_for(asked.out):
         results = _said(asked, parts)
         found = to_json_object(results, asked.samples, asked.seed)
         record = json.dumps(found, indent=2, ensure_ascii=False, allow_nan=False)
@@ -76,21 +74,6 @@ def run_paper(asked: Asked) -> int:
         written = write_document(_document(results, parts, asked), asked.out, "paper")
     print(record if asked.format == "json" else f"\nwrote {written[0]}, paper.md, paper.json and rows.jsonl")
     return 0 if results.is_as_printed else 1
-
-
-@contextmanager
-def _folder(out: Path) -> Iterator[None]:
-    """Makes the folder before minutes of work, and takes it away again if nothing came of it."""
-    try:
-        is_new = not out.exists()
-        out.mkdir(exist_ok=True)
-    except OSError as error:
-        raise RatfitError(f"--out {out}: no folder can be made there ({error.strerror}); name another") from None
-    try:
-        yield
-    finally:
-        if is_new and not any(out.iterdir()):
-            out.rmdir()
 
 
 def _said(asked: Asked, parts: dict[str, Section]) -> Results:

@@ -29,13 +29,15 @@ LAYERS = [
     ("_study", "_schedule", "_setting", "_double_double"),
     ("_sampling", "_record"),
     ("_error", "_speed"),
+    ("models",),
     ("gallery", "baselines"),
     ("_bench",),
+    ("claims",),
     ("report", "plot"),
     ("cli",),
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
-MAY_LOAD_JAX = {"_lower", "_kernel", "_double_double", "_sampling", "_error", "_speed"}
+MAY_LOAD_JAX = {"_lower", "_kernel", "_double_double", "_sampling", "_error", "_speed", "models"}
 
 
 def modules():

@@ -1,0 +1,74 @@
+"""Pairs of directions, and the five cosines by which a reflectance depends on them.
+
+Directions are arrays of shape (..., 3) in the local frame of the surface: the normal N is +z, the tangent +x. In the
+letters of schlick1994, H being the half vector of the view V and the light V': `t` = N.H, `u` = H.V, `v` = N.V,
+`v_prime` = N.V', and `w` the cosine of the azimuth of H against the tangent, folded into the first quadrant. Further
+products follow: V.V' = 2 u^2 - 1, |V + V'| = 2 u, and t = (v + v')/(2 u).
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from ratfit._parse import RatfitError
+from ratfit._target import parameter
+
+T, U, V, V_PRIME, W = (parameter(name, 0, 1) for name in ("t", "u", "v", "v_prime", "w"))
+LETTERS = (T, U, V, V_PRIME, W)
+"""The symbols that a model's formula is written in, beside its parameters."""
+
+UNIT = 1e-3
+"""How far from 1 the length of a direction may be in strict mode."""
+
+
+def library(*arrays: Any) -> tuple[str, Any]:
+    """The name of the array library of some values, `"numpy"` or `"jax"`, and its module."""
+    jax = sys.modules.get("jax")  # a JAX array cannot come from a program that never imported JAX
+    if jax is not None and any(isinstance(array, jax.Array) for array in arrays):
+        return "jax", jax.numpy
+    import numpy
+
+    return "numpy", numpy
+
+
+def as_directions(given: Any, what: str) -> Any:
+    """An array of directions. **Fails** with `RatfitError` where the last axis has not the three coordinates."""
+    _, numpy = library(given)
+    array = numpy.asarray(given)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise RatfitError(f"{what} has the shape {array.shape}: directions are arrays of shape (..., 3), normal +z")
+    return array if numpy.issubdtype(array.dtype, numpy.floating) else array.astype(float)
+
+
+def cosines(view: Any, light: Any) -> tuple[Any, ...]:
+    """t, u, v, v' and w of pairs of unit directions, of the shape that both broadcast to without the last axis.
+
+    At N = H, where H has no azimuth, w is 1; at V' = -V, where there is no H, t is 0.
+    """
+    _, numpy = library(view, light)
+    half = view + light
+    x, y, z = (half[..., axis] for axis in range(3))
+    across = x * x + y * y
+    square = across + z * z
+    length = _where_positive(numpy, square, numpy.sqrt, 0)
+    t = _where_positive(numpy, length, lambda known: numpy.clip(z / known, 0, 1), 0)
+    w = _where_positive(numpy, across, lambda known: numpy.clip(numpy.abs(x) / numpy.sqrt(known), 0, 1), 1)
+    v, v_prime = numpy.broadcast_arrays(view[..., 2], light[..., 2])
+    return t, numpy.clip(length / 2, 0, 1), v, v_prime, w
+
+
+def _where_positive(numpy: Any, values: Any, function: Any, otherwise: float) -> Any:
+    """A function of the positive ones among some values; its gradient never sees the others."""
+    positive = values > 0
+    return numpy.where(positive, function(numpy.where(positive, values, 1)), otherwise).astype(values.dtype)
+
+
+def check_directions(array: Any, what: str) -> None:
+    """**Fails** with `RatfitError` for a direction that is not of unit length or not above the horizon."""
+    _, numpy = library(array)
+    length = numpy.sqrt(numpy.sum(array * array, axis=-1))
+    if not bool(numpy.all(numpy.abs(length - 1) <= UNIT)):
+        raise RatfitError(f"{what}: a direction is not of unit length: divide by its length")
+    if not bool(numpy.all(array[..., 2] > 0)):
+        raise RatfitError(f"{what}: a direction is not above the horizon (z > 0): turn it into the surface's frame")

@@ -156,7 +156,7 @@ class Fit:
         *,
         parameters: Mapping[str, Any] | None = None,
         reference: str | None = None,
-        error: Any = "peak",
+        error: str = "peak",
     ) -> Any:
         """Draws the exact function, the fit, its conditions and its error; see `ratfit.plot.plot_fit`."""
         from ratfit.plot import plot_fit

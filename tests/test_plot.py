@@ -231,6 +231,7 @@ def test_axes_that_are_given_are_drawn_on():
     fit = line_through(sp.exp(X), 0, 1)
     pair = Figure().subplots(2)
     assert fit.plot(pair) == tuple(pair)
+    assert pair[0].get_xlim() == pair[1].get_xlim(), "places stand below each other, whether axes are shared or not"
     one = Figure().subplots()
     assert fit.plot(one) == (one, None) and "fit" in curves(one)
     with pytest.raises(rf.RatfitError, match="a pair"):

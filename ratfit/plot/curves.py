@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
 
-from ratfit._condition import AbstractPointCondition, Equation, Limit
 from ratfit._fit import Candidate, Fit
 from ratfit._lower import lower
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
 from ratfit._setting import Setting, setting
-from ratfit._target import Target, sample_values
+from ratfit._target import Parameter, Target, sample_values
 from ratfit.gallery import card, is_card
-from ratfit.plot.error import ROUNDING
+from ratfit.plot.far import seen, within
 from ratfit.plot.style import SERIES
 from ratfit.plot.text import significant
-from ratfit.plot.view import CUTS, broken, cut, is_pole
+from ratfit.plot.view import broken, is_pole
 
 Parameters = Mapping[str, float | Sequence[float]]
 
@@ -32,9 +31,6 @@ NEAREST = 1e-5
 
 MOST = 2 * len(SERIES)
 """Curves of a family that an eye can still tell apart."""
-
-FAR = 1e8
-"""Where a function with a limit has come near it."""
 
 
 @dataclass(frozen=True)
@@ -95,9 +91,6 @@ class FitCurves:
         return heights_at(places, formula, self.setting)
 
 
-PLACED = (AbstractPointCondition, Equation, Limit)
-"""Conditions that hold at a place."""
-
 ERRORS: Mapping[str, str] = {
     "peak": "error / peak",
     "relative": "error / |exact|",
@@ -120,8 +113,8 @@ def curves_of(fit: Fit, parameters: Parameters | None, reference: str | None) ->
     # A fit without an exact function is held against itself: its parameters are checked as those of any other.
     compared = fit if has_exact else replace(fit, problem=_with_target(fit))
     asked = _settings(fit.problem, parameters, reference)
-    places = [setting(compared, values, reference, _within(fit.problem, values)) for values in asked]
-    low, high = _seen(fit, places)
+    places = [setting(compared, values, reference, within(fit.problem, values)) for values in asked]
+    low, high = seen(fit, places)
     varying = [name for name in (asked[0] if asked else {}) if len({values.get(name) for values in asked}) > 1]
     return tuple(
         _drawn(place, (place.low if low is None else low, place.high if high is None else high), varying, has_exact)
@@ -180,7 +173,7 @@ def _settings(problem: Problem, parameters: Parameters | None, reference: str | 
         raise RatfitError(f"a picture has one family of curves: give {' or '.join(families)} one value")
     for parameter in problem.parameters:
         if parameter.name not in given:
-            asked.setdefault(parameter.name, float(sample_values({parameter}, ("1/2",))[0][parameter]))
+            asked.setdefault(parameter.name, middle(parameter))
     values = list(asked[families[0]]) if families else []  # type: ignore[arg-type]
     if families and not 1 <= len(values) <= MOST:
         raise RatfitError(f"{families[0]} has {len(values)} values: a picture holds 1 to {MOST} curves")
@@ -191,60 +184,14 @@ def _settings(problem: Problem, parameters: Parameters | None, reference: str | 
     return found
 
 
+def middle(parameter: Parameter) -> float:
+    """The middle of a parameter's range; of an infinite one, a place some way inside."""
+    return float(sample_values({parameter}, ("1/2",))[0][parameter])
+
+
 def _settings_of_card(problem: Problem) -> tuple[Mapping[str, sp.Expr], ...]:
     """The settings that a gallery problem is published with; none for other problems, whatever they are called."""
     if not is_card(problem.name):
         return ()
     known = card(problem.name)
     return known.settings if replace(known.problem, choice=problem.choice) == problem else ()
-
-
-def _within(problem: Problem, values: Mapping[str, Any]) -> tuple[float, float] | None:
-    """A finite piece of an infinite domain, for what needs one before it is known where to cut."""
-    low, high = problem.domain
-    if not (low.is_infinite or high.is_infinite):
-        return None
-    if low.is_infinite and high.is_infinite:
-        return 0.0, 1.0
-    known = {p: sp.Float(values[p.name]) for p in problem.parameters if p.name in values}
-    end = float((high if low.is_infinite else low).xreplace(known))
-    return (end - 1, end) if low.is_infinite else (end, end + 1)
-
-
-def _seen(fit: Fit, places: Sequence[Setting]) -> tuple[float | None, float | None]:
-    """Where infinite ends are cut, the same for all settings; None for an end that is finite."""
-    low, high = fit.problem.domain
-    if low.is_infinite and high.is_infinite:
-        far = max(_cut(fit, place, side, 0.0) for place in places for side in (1, -1))
-        return -far, far
-    if high.is_infinite:
-        return None, max(place.low + _cut(fit, place, 1, place.low) for place in places)
-    if low.is_infinite:
-        return min(place.high - _cut(fit, place, -1, place.high) for place in places), None
-    return None, None
-
-
-def _cut(fit: Fit, place: Setting, side: int, start: float) -> float:
-    values = tuple(place.values.values())
-    exact = lower(place.exact, (place.variable, *place.values))
-    marked = [c.condition.at for c in fit.conditions if isinstance(c.condition, PLACED)]
-    known = [lower(at, tuple(place.values))(*values) for at in marked if not at.is_infinite]
-    reach = 1.3 * max((abs(p - start) for p in (*known, _worst(place, side, start)) if math.isfinite(p)), default=0.0)
-    height: Callable[[float], float] = lambda there: float(exact(there, *values))  # noqa: E731
-    limit = height(start + side * FAR)
-    size = max(abs(h) for k in range(11) if math.isfinite(h := height(start + side * k)))
-    settles = abs(height(start + side * FAR / 100) - limit) < 1e-3 * size  # not so where either is nan
-    return cut(height, start, side, limit if settles else None, reach)
-
-
-def _worst(place: Setting, side: int, start: float) -> float:
-    """The place of the largest error on the way to infinity, so that it is seen; `start` where the error only grows."""
-    import numpy as np
-
-    there = start + side * np.geomspace(1e-2, CUTS[-1], 2000)
-    values = tuple(place.values.values())
-    exact, fit = (lower(e, (place.variable, *place.values))(there, *values) for e in (place.exact, place.formula))
-    off = np.nan_to_num(abs(fit - exact), nan=0.0, posinf=0.0)
-    worst = off.argmax()
-    is_inside = worst < len(off) - 1 and off[worst] > ROUNDING * abs(exact[worst])
-    return float(there[worst]) if is_inside else start

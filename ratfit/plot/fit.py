@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from ratfit._fit import Fit
 from ratfit._parse import RatfitError
-from ratfit._problem import Problem
 from ratfit.plot.conditions import Page, draw_conditions, letter, said
 from ratfit.plot.curves import ERRORS, FitCurves, Parameters, curves_of, other_formulas
 from ratfit.plot.error import PERCENT, PLAIN, Worst, draw_error, draw_error_curve, worst_text
+from ratfit.plot.labels import exact_text, title_of, x_label
 from ratfit.plot.marks import Window
-from ratfit.plot.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, SERIES, dress, legend_below, settings
-from ratfit.plot.text import mathematics, on_a_line, plain, shortened, significant, text_depth, text_width
+from ratfit.plot.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, SERIES, axes_width, dress, legend_below, settings
+from ratfit.plot.text import plain, shortened, text_depth
 from ratfit.plot.view import span
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Error = Literal["relative", "absolute", "peak"]
 
 MANY_TIMES = 8
 """Where the peaks of a family differ more than this, each curve is drawn in parts of its own peak."""
@@ -30,9 +28,6 @@ OTHERS = 3
 
 _WIDE: dict[str, Any] = {"linewidth": 5.5, "alpha": 0.25, "zorder": 2}
 
-TITLE = 420
-"""Points that a title may take on one line."""
-
 
 def plot_fit(
     fit: Fit,
@@ -40,7 +35,7 @@ def plot_fit(
     *,
     parameters: Parameters | None = None,
     reference: str | None = None,
-    error: Error = "peak",
+    error: str = "peak",
 ) -> tuple[Axes, Axes | None]:
     """Draws a fit over the domain: the exact function wide and pale, the fit thin, the conditions marked, the error.
 
@@ -68,8 +63,10 @@ def plot_fit(
         above, below = _axes(axes, has_strip=curves[0].exact is not None)
         notes = _draw_strip(below, fit, curves, definition) if below is not None else []
         handles = _draw_curves(above, fit, curves, reference, notes)
+        if below is not None:
+            below.set_xlim(above.get_xlim())
         lowest = above if below is None else below
-        lowest.set_xlabel(plain(_x_label(fit, curves, parameters, reference)))
+        lowest.set_xlabel(plain(x_label(fit, curves, parameters)))
         legend_below(lowest, handles, is_ours=axes is None)
     return above, below
 
@@ -101,7 +98,7 @@ def _draw_curves(
     window = _window(curves, scales)
     axes.set_xlim(window.left, window.right)
     axes.set_ylim(window.bottom, window.top)
-    exact = _exact_text(fit.problem, reference)
+    exact = exact_text(fit.problem, reference)
     handles = _draw_lines(axes, curves, scales, exact, notes)
     others = _draw_others(axes, fit, curves[0]) if len(curves) == 1 else []
     handles += [*others, *draw_conditions(Page(axes, window, curves, scales), fit)]
@@ -112,7 +109,7 @@ def _draw_curves(
     axes.set_ylabel(
         plain(f"{letter(fit.problem)}({fit.problem.variable})" + (", in parts of its peak" if is_scaled else ""))
     )
-    title = _title(fit)
+    title = title_of(fit, 0.95 * axes_width(axes))
     axes.set_title(title, pad=6 + text_depth(title, 11))
     dress(axes)
     return handles
@@ -180,18 +177,6 @@ def _draw_others(axes: Axes, fit: Fit, curve: FitCurves) -> list[Any]:
     return handles
 
 
-def _exact_text(problem: Problem, reference: str | None) -> str:
-    if reference is not None:
-        source = next((r.source for r in problem.references if r.name == reference), "")
-        return plain(f"exact: {reference}" + (f" ({source})" if source else ""))
-    if problem.target is None:
-        names = ", ".join(r.name for r in problem.references)
-        return plain("no target to compare with" + (f" (references: {names})" if names else ""))
-    written = on_a_line(problem.target.expression)
-    text = f"exact: ${written}$"
-    return text if written is not None and text_width(text, 9) < TITLE / 2 else "exact"
-
-
 def _draw_strip(axes: Axes, fit: Fit, curves: Sequence[FitCurves], definition: str) -> list[str]:
     """The errors; returns for each curve of a family what its worst is, for one is written at its point."""
     unit, variable = PLAIN if definition == "absolute" else PERCENT, fit.problem.variable.name
@@ -206,30 +191,3 @@ def _draw_strip(axes: Axes, fit: Fit, curves: Sequence[FitCurves], definition: s
         found = draw_error_curve(axes, curve.places, curve.errors(definition), colour=colour, dashes=dashes, unit=unit)
         worst.append(found)
     return [worst_text(each, variable=variable, unit=unit) for each in worst]
-
-
-def _title(fit: Fit) -> str:
-    """The name and the formula where both fit on a line and the formula is exact, else the name."""
-    name = plain(fit.problem.name)
-    if any(len(str(number.round(8))) > 6 for number in fit.chosen.atoms() if number.is_Float):
-        return name
-    written = mathematics(fit.chosen)
-    title = f"{name}:  ${written}$"
-    return title if written is not None and text_width(title, 11) < TITLE else name
-
-
-def _x_label(fit: Fit, curves: Sequence[FitCurves], parameters: Parameters | None, reference: str | None) -> str:
-    """The variable, where an infinite domain is cut, and the parameters that all curves share."""
-    problem = fit.problem
-    label = str(problem.variable)
-    if any(end.is_infinite for end in problem.domain):
-        low, high = (str(end).replace("oo", "∞").replace("-", "−") for end in problem.domain)
-        label += f"   (cut: the domain is [{low}, {high}])"
-    settings = [curve.setting.parameters for curve in curves]
-    shared = {name: value for name, value in settings[0].items() if len({s[name] for s in settings}) == 1}
-    said = {s.name for each in problem.references if each.name == reference for s in each.parameters}
-    values = [
-        f"{name} = {significant(value, 4)}" + ("" if name in said or name in (parameters or {}) else " (mid-range)")
-        for name, value in shared.items()
-    ]
-    return label + (f"   at {', '.join(values)}" if values else "")

@@ -69,6 +69,11 @@ def dress(axes: Axes) -> None:
     axes.grid(alpha=0.25, linewidth=0.6)
 
 
+def axes_width(axes: Axes) -> float:
+    """The width of axes in points, before any layout changes it."""
+    return float(72 * axes.get_window_extent().width / axes.figure.dpi)
+
+
 def legend_below(axes: Axes, handles: Sequence[Any], is_ours: bool) -> None:
     """A legend below the axes and their label, where no data are.
 
@@ -80,7 +85,7 @@ def legend_below(axes: Axes, handles: Sequence[Any], is_ours: bool) -> None:
         return
     widths = [text_width(str(handle.get_label()), 9) for handle in handles]
     half = (len(handles) + 1) // 2
-    columns = 2 if max(widths[:half]) + max(widths[half:], default=0) < _BESIDE else 1
+    columns = 2 if max(widths[:half]) + max(widths[half:], default=0) < min(_BESIDE, axes_width(axes)) else 1
     if is_ours:
         height = axes.figure.get_figheight() + _ROW * (half if columns == 2 else len(handles))  # type: ignore[union-attr]
         axes.figure.set_figheight(height)  # type: ignore[union-attr]  # a Figure of its own

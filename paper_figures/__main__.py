@@ -32,7 +32,12 @@ def main(arguments: list[str] | None = None) -> None:
 @click.argument("names", nargs=-1)
 @click.option("--out", type=click.Path(path_type=Path), default=MADE, help="Folder; made where it is missing.")
 @click.option("--format", "formats", multiple=True, type=click.Choice(FORMATS), help="Repeatable; all three left out.")
-@click.option("--width", type=click.IntRange(60, 300), default=int(style.PAGE), help="In mm: 170 a page, 85 a column.")
+@click.option(
+    "--width",
+    type=click.IntRange(style.LEAST, style.MOST),
+    default=int(style.PAGE),
+    help="In mm: 170 a page, 85 a column.",
+)
 def figures(names: tuple[str, ...], out: Path, formats: tuple[str, ...], width: int) -> None:
     """Draws Figures 4 to 8 of the 1994 paper and README's picture, and prints their captions.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import ratfit as rf
 from paper_figures import style
-from paper_figures.curves import Curve, curve
+from paper_figures.curves import Curve, curve, printed_error
 from paper_figures.strip import thin
 from paper_figures.style import percent, share
 from ratfit.plot.error import draw_error
@@ -62,6 +62,8 @@ def _draw_errors(axes: Axes, found: Sine) -> None:
     for each, (colour, dashes) in zip((found.fraction, found.cubic), SERIES, strict=False):
         draw_error(axes, each.places, each.errors, colour=colour, dashes=dashes, label=each.label, variable="$x$")
     thin(axes)
+    for text in axes.texts:
+        text.set_fontsize(axes.yaxis.get_ticklabels()[0].get_fontsize())
     style.head(axes, "Error, approximation − true:")
 
 
@@ -77,6 +79,6 @@ def caption(found: Sine) -> str:
         "The sine on a quarter turn. Above, as the paper drew it: the true function and the fraction of Eq. 12. "
         f"Beneath: the error of the fraction, in percent of the peak, at worst {percent(fraction.worst[1])} at "
         f"x = {significant(fraction.worst[0], 2)} and {share(fraction.mean)} on average, where the paper prints "
-        "1.4 %. A cubic that keeps the same four conditions needs no division and is closer: at worst "
-        f"{percent(cubic.worst[1])}, on average {share(cubic.mean)}."
+        f"{printed_error('eq12')}. A cubic that keeps the same four conditions needs no division and is closer: at "
+        f"worst {percent(cubic.worst[1])}, on average {share(cubic.mean)}."
     )

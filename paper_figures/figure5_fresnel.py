@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import ratfit as rf
 from paper_figures import style
-from paper_figures.curves import Curve, curve
+from paper_figures.curves import Curve, curve, printed_error
 from paper_figures.strip import draw_strip
 from paper_figures.style import percent, share
 from ratfit.plot.text import significant
@@ -54,6 +54,6 @@ def caption(found: tuple[Curve, ...]) -> str:
     return (
         "The Fresnel factor over u, the cosine of the angle of incidence. Above, as the paper drew it: the true "
         "function, and Eq. 15, which knows of a material its reflectance at u = 1 alone. Beneath: the error, in "
-        f"percent of full reflection, with the worst point of each material: {each}. The paper prints 0.6 % and no "
-        "optical constants: the metals are the rows of Johnson and Christy's table nearest to 589 nm."
+        f"percent of full reflection, with the worst point of each material: {each}. The paper prints "
+        f"{printed_error('eq15')} and no optical constants: the metals are the rows of Johnson and Christy's table nearest to 589 nm."
     )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import ratfit as rf
 from paper_figures import style
-from paper_figures.curves import Curve, curve
+from paper_figures.curves import Curve, curve, printed_error
 from paper_figures.strip import draw_strip
 from paper_figures.style import percent
 from ratfit.gallery import card
@@ -96,7 +96,9 @@ def caption(found: Smith) -> str:
     return (
         "Smith's factor over v, the cosine of the angle, for five slopes m. First row, as the paper drew it: Eq. 18 "
         "and Eq. 19. Second row, what the paper did not show: Eq. 18 lacks an exponential, Smith's own function has "
-        "it, and the function used today rises twice as steeply. Beneath: the errors of Eq. 19 against each of the "
-        f"three, in percent of 1, with the worst point of each curve: {worst(found.printed)} against Eq. 18, "
-        f"{worst(found.smith)} against Smith's, {worst(found.walter)} against today's. The paper prints 1.8 %."
+        "it, and the function used today rises twice as steeply at v = 0. Beneath: the errors of Eq. 19 against each "
+        "of the three, in percent of 1, their largest value, over a logarithmic v, with the worst point of each curve "
+        f"marked, from {worst(found.printed)} against Eq. 18, from "
+        f"{worst(found.smith)} against Smith's, and from {worst(found.walter)} against today's. The paper prints "
+        f"{printed_error('eq19')}."
     )

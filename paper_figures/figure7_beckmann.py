@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import ratfit as rf
 from paper_figures import style
-from paper_figures.curves import Curve, curve
+from paper_figures.curves import Curve, curve, printed_error
 from paper_figures.polar import draw_lobes, draw_sector
 from paper_figures.strip import draw_strip
 from paper_figures.style import percent
@@ -75,6 +75,6 @@ def caption(found: tuple[Lobe, ...]) -> str:
         "Beckmann's distribution of slopes in polar coordinates: alpha, the angle to the normal, against D(t), "
         "t = cos(alpha), here in parts of its peak 1/m^2, which grows from 4 to 10 000 as m falls from 0.5 to 0.01. "
         "Above, as the paper drew it: the true function and Eq. 21. Beneath: the error, in percent of the peak, over "
-        f"the slope in units of m, with the worst points: {each}. Eq. 21 falls faster "
-        "at first, is too high from slopes of about 1.5 m on, and ends at t = 1 - m. The paper prints 2.7 %."
+        f"the slope in units of m, with the worst points: {each}. Eq. 21 falls faster at first, is too high "
+        f"from slopes of about 1.5 m on, and ends at t = 1 − m. The paper prints {printed_error('eq21')}."
     )

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
-LARGER = 1.2
+LARGER = 1.3
 """The words, beside the type of the curves."""
 
 

@@ -32,10 +32,10 @@ def draw_strip(axes: Axes, curves: Sequence[Curve], title: str, over: Sequence[N
 
 
 def thin(axes: Axes) -> None:
-    """Lines and marks as thin as the figure's others."""
+    """Curves and marks as thin as the figure's others; a zero line, which has two points, stays as it is."""
     import matplotlib
 
     for line in axes.lines:
         line.set_markersize(matplotlib.rcParams["lines.markersize"])
-        if line.get_linestyle() != "None" and len(line.get_xdata()) > 2:
+        if len(line.get_xdata()) > 2:
             line.set_linewidth(matplotlib.rcParams["lines.linewidth"])

@@ -17,8 +17,11 @@ if TYPE_CHECKING:
 PAGE, COLUMN = 170.0, 85.0
 """Widths in mm: of a page's text, and of one of its two columns."""
 
+LEAST, MOST = 80, 300
+"""Widths in mm that a figure may have: its words have no room on less."""
+
 NARROW = 120.0
-"""Below this width in mm there is no room for everything in one line."""
+"""Below this width in mm a figure is laid out for a column."""
 
 INK, GRID = "#000000", "#D8D8D8"
 
@@ -79,13 +82,16 @@ def sheet(width: float, height: float) -> Iterator[Figure]:
         figure = Figure(figsize=(width / 25.4, height / 25.4), layout="constrained")
         figure.get_layout_engine().set(w_pad=0.03, h_pad=0.03)
         yield figure
-        figure.draw_without_rendering()  # what is made on first drawing, ticks of polar axes say, has this look too
+        figure.draw_without_rendering()  # what is made on first drawing, further ticks say, has this look too
 
 
 def is_narrow(axes: Axes) -> bool:
-    """Whether axes are about as wide as a column, before the layout has made room for what stands around them."""
+    """Whether a title and a legend have no room on one line above these axes.
+
+    Told by their share of the figure, for this is asked before the layout has made room for what stands around them.
+    """
     figure = axes.figure
-    return 25.4 * figure.get_figwidth() * axes.get_subplotspec().get_position(figure).width < 0.75 * NARROW
+    return 25.4 * figure.get_figwidth() * axes.get_subplotspec().get_position(figure).width < 0.95 * NARROW
 
 
 def family(name: str, values: Sequence[float]) -> list[str]:

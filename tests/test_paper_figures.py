@@ -235,7 +235,7 @@ def test_no_text_stands_on_another_or_is_cut_or_tiny(name, width):
         across = min(first.x1, second.x1) - max(first.x0, second.x0)
         up = min(first.y1, second.y1) - max(first.y0, second.y0)
         assert min(across, up) <= touch, (one, other)
-    assert min(text.get_fontsize() for text in texts) >= 5.8
+    assert min(text.get_fontsize() for text in texts) >= 6.4
 
 
 @pytest.mark.parametrize("name", ["figure4_sine", "figure7_beckmann"])
@@ -290,7 +290,7 @@ def test_command_writes_whole_files_that_are_the_same_again(tmp_path, capsys):
         (["fig"], "'fig' is the beginning of several; there are: figure4_sine, "),
         ([""], "no figure ''"),
         (["--format", "gif"], "'gif' is not one of 'svg', 'pdf', 'png'"),
-        (["--width", "10"], "10 is not in the range 60<=x<=300"),
+        (["--width", "10"], "10 is not in the range 80<=x<=300"),
         (["--width", "nan"], "'nan' is not a valid integer"),
         (["figure4", "--out", "/dev/null/folder"], "name a folder that can be written to"),
         (["--nonsense"], "--nonsense"),

@@ -95,31 +95,38 @@ def test_outputs_are_saved_in_order_and_nothing_else_is(path):
     assert metadata["kernelspec"]["name"] == "python3" and metadata["language_info"] == {"name": "python"}
 
 
-def printing(text, saved, tags=()):
-    """A notebook of one cell with this output saved."""
-    output = [{"output_type": "stream", "name": "stdout", "text": saved}]
-    code = {"cell_type": "code", "id": "a", "execution_count": 1, "source": text, "outputs": output}
-    return {"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": [{**code, "metadata": {"tags": [*tags]}}]}
+def notebook_of(path, *typed):
+    """A notebook with these cells: source, saved output, tags."""
+    written = []
+    for number, (text, saved, tags) in enumerate(typed):
+        output = [{"output_type": "stream", "name": "stdout", "text": saved}] if saved else []
+        code = {"cell_type": "code", "id": f"c{number}", "execution_count": 1, "source": text, "outputs": output}
+        written.append({**code, "metadata": {"tags": tags}})
+    path.write_text(json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": written}))
+    return path
 
 
 @needs_kernel
-@pytest.mark.parametrize(
-    "notebook, words",
-    [
-        (printing("print(1 + 1)", "2\n"), None),
-        (printing("print(1 + 1)", "3\n"), r"-3\n\+2"),
-        (printing("print(1 + 1)", "3\n", ["timing"]), None),
-        (printing("1 / 0", "2\n"), "ZeroDivisionError"),
-        (printing("import sys; print('careful', file=sys.stderr)", ""), "no place in a saved notebook"),
-        (printing("print('/home/somebody/notes')", "/home/somebody/notes\n"), "no place in a saved notebook"),
-    ],
-    ids=["the same", "another number", "a timing", "a failure", "standard error", "a path"],
-)
-def test_a_check_says_what_is_wrong(tmp_path, notebook, words):
-    path = tmp_path / "some.ipynb"
-    path.write_text(json.dumps(notebook))
+def test_a_check_says_what_is_wrong_and_writes_nothing(tmp_path):
+    path = notebook_of(
+        tmp_path / "some.ipynb",
+        ("print(1 + 1)", "2\n", []),
+        ("print(1 + 2)", "4\n", []),
+        ("print(1 + 3)", "5\n", ["timing"]),
+        ("import sys; print('careful', file=sys.stderr)", "", []),
+        ("print('/home/somebody/notes')", "/home/somebody/notes\n", []),
+        ("print(1 + 4)", "", ["timing"]),
+    )
     before = path.read_text()
     found = executed("--check", path)
+    assert found.returncode == 1
     assert path.read_text() == before
-    assert found.returncode == (1 if words else 0), found.stderr
-    assert re.search(words or r"\A\Z", found.stderr), found.stderr
+    assert re.findall(r"cell (\d) prints what has no place", found.stderr) == ["4", "5"]
+    assert re.findall(r"cell (\d) prints something else", found.stderr) == ["2", "4", "6"]
+    assert "-4\n+3\n" in found.stderr
+
+
+@needs_kernel
+def test_a_cell_that_fails_is_told_of(tmp_path):
+    found = executed(notebook_of(tmp_path / "some.ipynb", ("1 / 0", "2\n", [])))
+    assert found.returncode == 1 and "some.ipynb" in found.stderr and "ZeroDivisionError" in found.stderr

@@ -55,5 +55,6 @@ def caption(found: tuple[Curve, ...]) -> str:
         "The Fresnel factor over u, the cosine of the angle of incidence. Above, as the paper drew it: the true "
         "function, and Eq. 15, which knows of a material its reflectance at u = 1 alone. Beneath: the error, in "
         f"percent of full reflection, with the worst point of each material: {each}. The paper prints "
-        f"{printed_error('eq15')} and no optical constants: the metals are the rows of Johnson and Christy's table nearest to 589 nm."
+        f"{printed_error('eq15')} and no optical constants: the metals are the rows of Johnson and Christy's "
+        "table nearest to 589 nm."
     )

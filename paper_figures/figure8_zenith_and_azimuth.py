@@ -29,7 +29,7 @@ VALUES = (0.01, 0.05, 0.2, 0.5, 1.0)
 CENTRE = 1e-3
 """What stands in the centre of the logarithmic polar coordinates."""
 
-RINGS = {1: "0.01", 2: "", 3: "1", 4: "", 5: "100"}
+RINGS = {1.0: "0.01", 2.0: "", 3.0: "1", 4.0: "", 5.0: "100"}
 """Decades above the centre, with what they are called."""
 
 RIM = 5.1

@@ -146,6 +146,21 @@ def test_azimuth():
         assert right == pytest.approx(1, rel=1e-10)
 
 
+def test_what_the_captions_say():
+    found = data("figure6_smith")
+    rises = [curves[-1].exact[1] / curves[-1].places[1] for curves in (found.printed, found.smith, found.walter)]
+    assert rises == pytest.approx(np.array([1, 1, 2]) * math.sqrt(math.pi / 2) / 0.5, rel=1e-3)
+    for lobe in data("figure7_beckmann"):
+        assert (lobe.curve.errors[(lobe.slope > 0) & (lobe.slope < 1.3)] < 0).all()
+        assert (lobe.curve.errors[(lobe.slope > 1.7) & (lobe.slope < 2.8)] > 0).all()
+    zenith, azimuth = data("figure8_zenith_and_azimuth")
+    for curve, r in zip(zenith.curves, ROUGHNESS, strict=True):
+        slope = np.tan(zenith.angle) / math.sqrt(r)
+        assert (curve.errors[(slope > 0) & (slope < 1)] < 0).all()
+        assert (curve.errors[slope > 1.7] > 0).all()
+    assert (azimuth.printed_mean[:-1] < 1).all()
+
+
 # figure, title of the axes, the curves behind them, which array
 PANELS = [
     ("figure5_fresnel", "True function: Eq. 13", lambda d: d, "exact"),

@@ -14,8 +14,8 @@ from ratfit._parse import RatfitError
 from ratfit._record import Record, read_rows
 from ratfit._setting import RANDOM
 from ratfit.gallery import card
+from ratfit.report import rows as report_rows
 from ratfit.report.paper import Asked, run, run_paper
-from ratfit.report.paper import rows as paper_rows
 from ratfit.report.paper.closest import Finding, closest, common, distance, rounds_to
 from ratfit.report.paper.closest_part import closest_sentence
 from ratfit.report.paper.common_part import common_sentence
@@ -226,7 +226,7 @@ def measured(monkeypatch):
         if len(made) == made_up.stops_at:
             raise KeyboardInterrupt
         made.append((job.name, how.sampling, dict(job.parameters), tuple(backends)))
-        key = paper_rows.asked(job, how, "")
+        key = report_rows.asked(job, how, "")
         epsilon = dict.fromkeys(DEFINITIONS, 0.0136)
         for backend in backends or ("",):
             gammas = (20.0, 19.0, 21.0) if backend else (None, None, None)
@@ -237,7 +237,7 @@ def measured(monkeypatch):
                 note="noisy: the load average was 9 on 2 cores" if backend else "", **about,
             )  # fmt: skip
 
-    monkeypatch.setattr(paper_rows, "measure", measure)
+    monkeypatch.setattr(report_rows, "measure", measure)
     monkeypatch.setattr(run, "use_all_cores", lambda: None)  # JAX computes already, in this process
     monkeypatch.setattr(run, "EQUATIONS", ("eq12", "eq19"))
     monkeypatch.setattr(run, "footnote_tasks", lambda samples, seed: footnote_tasks(samples, seed)[:2])

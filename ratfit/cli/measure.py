@@ -21,7 +21,7 @@ from ratfit.gallery import Card
 
 if TYPE_CHECKING:
     from ratfit._bench import Job
-    from ratfit.report.bench import Run
+    from ratfit.report.rows import Book, Planned
 
 SAMPLES = 1_000_000
 
@@ -80,6 +80,7 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
     ratfit bench eq12 --samples 1e10 --coordinator 10.0.0.1:9876 --processes 2 --process K
     """
     from ratfit._setting import RANDOM
+    from ratfit.report.rows import Book
 
     found, shown = read_problem(problem, degree, options)
     values = settings_of(settings, RANDOM)
@@ -97,7 +98,9 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
         print(rendered(fit, shown, options["format_"]))
         return 1
     _begin(options)
-    return _finish(_run(fit, shown, {n: v for n, v in values.items() if n in names}, options), old, options)
+    book = Book(options["out"], options["resume"])
+    plan = _planned(fit, shown, {n: v for n, v in values.items() if n in names}, options, book)
+    return _finish(plan, book, old, options)
 
 
 def _check_measuring(options: dict[str, Any]) -> None:
@@ -136,19 +139,23 @@ def _keep_for_results() -> None:
     sys.stdout = os.fdopen(ours, "w", encoding=sys.stdout.encoding)
 
 
-def _run(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str, Any]) -> Run:
-    from ratfit._bench import Measuring
+def _planned(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str, Any], book: Book) -> list[Planned]:
+    from ratfit._bench import Measuring, is_timed
     from ratfit._sampling import check_protocol
-    from ratfit.report.bench import Run
+    from ratfit.report.rows import Measurement, plan
 
     asked = SAMPLES if options["samples"] is None else options["samples"]
     samples = None if options["exhaustive"] else asked
     sampling = "exhaustive" if options["exhaustive"] else options["sampling"]
     check_protocol(sampling, samples, options["seed"], options["dtype"])
     how = Measuring(samples, options["seed"], sampling, options["dtype"])
-    found = _jobs(fit, shown, given, options)
-    about = _about(fit, shown, _command())
-    return Run(found, how, _backends(options["backends"]), about, options["out"], options["resume"])
+    found, backends, about = _jobs(fit, shown, given, options), _backends(options["backends"]), _about(fit, shown)
+    titles = [f"{number}/{len(found)} {job.name} {dict(job.parameters)}" for number, job in enumerate(found, 1)]
+    measurements = [
+        Measurement(job, how, backends if is_timed(job) else (), title, about)
+        for job, title in zip(found, titles, strict=True)
+    ]
+    return plan(measurements, book)
 
 
 def _jobs(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str, Any]) -> list[Job]:
@@ -185,11 +192,10 @@ def _backends(asked: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(asked)) or available()
 
 
-def _about(fit: Fit, shown: Card | None, command: str) -> Any:
+def _about(fit: Fit, shown: Card | None) -> dict[str, Any]:
     from ratfit.report.text import published_object, recorded
 
-    about = {"fit": recorded(fit), "command": command, "published": published_object(fit, shown)}
-    return lambda job: about
+    return {"fit": recorded(fit), "command": _command(), "published": published_object(fit, shown)}
 
 
 def _command() -> str:
@@ -217,14 +223,15 @@ def _old_rows(path: str | None) -> list[Any] | None:
     return read_rows(path)
 
 
-def _finish(run: Run, old: list[Any] | None, options: dict[str, Any]) -> int:
+def _finish(plan: Sequence[Planned], book: Book, old: list[Any] | None, options: dict[str, Any]) -> int:
     """Measures, prints, compares; the exit status."""
     from ratfit._error.machines import is_first
     from ratfit._record import compare, contract, machine
     from ratfit.report.against import against_text, got_worse
-    from ratfit.report.bench import rows, tables
+    from ratfit.report.bench import tables
+    from ratfit.report.rows import rows
 
-    found = _measured(rows(run), options)
+    found = _measured((row for each in plan for row in rows(each, book)), options)
     if not is_first():
         return 0
     if options["format_"] == "json":

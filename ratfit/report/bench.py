@@ -1,99 +1,15 @@
-"""`ratfit bench`: rows measured one by one, written as soon as they are done, shown as tables."""
+"""`ratfit bench`: measured rows as tables."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from typing import Any
 
-import ratfit
-from ratfit._bench import Job, Measuring, asked, is_timed, measure
-from ratfit._error import Watch
-from ratfit._error.machines import as_first_says, is_first
-from ratfit._record import (
-    PROTOCOL,
-    Row,
-    append_row,
-    check_resumable,
-    drop_checkpoint,
-    no_checkpoint,
-    read_checkpoint,
-    read_rows,
-    same_measurement,
-    write_checkpoint,
-)
-from ratfit.report.progress import Meter, progress
+from ratfit._record import Row
 from ratfit.report.text import aligned
 
 COLUMNS = ("peak_mean", "peak_rms", "peak_max", "relative_mean", "relative_max", "ulp_max")
 """The definitions of eps that a table shows; the record holds all of them."""
-
-
-@dataclass(frozen=True)
-class Run:
-    """Rows to measure and where they go: to the file `out`, appended one by one; with `resume` it is gone on from."""
-
-    jobs: Sequence[Job]
-    how: Measuring
-    backends: Sequence[str]
-    about: Callable[[Job], Mapping[str, Any]] = field(default=lambda job: {})
-    out: str | None = None
-    resume: bool = False
-
-
-def rows(run: Run) -> Iterator[Row]:
-    """Measures what is not measured yet, and gives all rows in order, as they are known.
-
-    Of several processes each measures the errors with the others; the first alone times, writes and reads files.
-    """
-    written = _written(run)
-    for number, job in enumerate(run.jobs, 1):
-        all_asked = [asked(job, run.how, backend) for backend in _backends(run, job)]
-        known = [next((row for row in written if same_measurement(row, **each)), None) for each in all_asked]
-        missing = [each["backend"] for each, row in zip(all_asked, known, strict=True) if row is None]
-        if int(as_first_says([len(missing)])[0]):
-            fresh = _measured(run, job, missing, f"{number}/{len(run.jobs)} {job.name} {dict(job.parameters)}")
-            known = [row or next(fresh) for row in known]
-        yield from (row for row in known if row is not None)
-    progress("")
-
-
-def _backends(run: Run, job: Job) -> Sequence[str]:
-    """The backends that a job is timed on; of one whose errors alone are measured, one without a name."""
-    return (run.backends if is_timed(job) else ()) or ("",)
-
-
-def _written(run: Run) -> list[Row]:
-    """The rows to go on from; a file of something else is refused before the work, not after."""
-    held = read_rows(run.out) if run.out and is_first() else []
-    if run.out and is_first() and (remark := no_checkpoint(run.out)):
-        print(f"ratfit: {remark}", file=sys.stderr)
-    if not run.resume:
-        return []
-    every = [asked(job, run.how, backend) for job in run.jobs for backend in _backends(run, job)]
-    check_resumable(held, every, run.out or "")
-    return held
-
-
-def _measured(run: Run, job: Job, backends: Sequence[str], title: str) -> Iterator[Row]:
-    """The rows of a job that were not there, one for each backend, each written before the next is begun."""
-    meter = Meter(title)
-    key = asked(job, run.how, "") | {"protocol": PROTOCOL, "ratfit": ratfit.__version__}
-    watch = _watch(run, key, meter) if run.out and is_first() else Watch(meter.at)
-    timed = [backend for backend in backends if backend] if is_first() else ()
-    for record in measure(job, run.how, timed, about=run.about(job), watch=watch, say=meter.say):
-        if run.out and is_first():
-            append_row(run.out, record)
-            drop_checkpoint(run.out)  # the errors are in the row; what is left of a job is only timed
-        yield record.to_line()
-
-
-def _watch(run: Run, key: Mapping[str, Any], meter: Meter) -> Watch:
-    out = run.out
-    assert out is not None
-    state = read_checkpoint(out, key) if run.resume else None
-    return Watch(meter.at, state, lambda made: write_checkpoint(out, key, made))
 
 
 def tables(found: Sequence[Row]) -> str:

@@ -74,6 +74,11 @@ class Task:
         return "m random" if self.is_random else f"m = {m:g}"
 
     @property
+    def words(self) -> str:
+        """Protocol, exact function and setting, for who waits for it."""
+        return " ".join(filter(None, (self.protocol, self.against, self.setting)))
+
+    @property
     def is_random(self) -> bool:
         """Whether every sample draws its own m."""
         return self.job.parameters.get("m") == RANDOM

@@ -10,7 +10,6 @@ from ratfit.report.paper.closest import Common, Finding, closest, common
 from ratfit.report.paper.closest_part import searched
 from ratfit.report.paper.footnote import EPSILON, PLACE
 from ratfit.report.paper.measurements import OF_COSINES, Derived, Task
-from ratfit.report.paper.rows import finding
 from ratfit.report.text import equals_published
 
 
@@ -94,3 +93,8 @@ def _closest_object(results: Results, place: str) -> dict[str, Any] | None:
         "definition": best.definition, "protocol": of.protocol, "setting": of.setting, "epsilon": best.value,
         "factor": best.distance, "tried": found.tried, "rounding": len(found.rounding),
     }  # fmt: skip
+
+
+def finding(task: Task, row: Row) -> Finding:
+    """A measured row as the search for the closest sees it."""
+    return Finding(task.place, task.protocol, task.setting, task.is_random, task.against, row["epsilon"])

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ratfit._derive import derive
 from ratfit._error.devices import use_all_cores
-from ratfit._record import Row, write_text
+from ratfit._record import Row, drop_checkpoint, read_rows, write_text
 from ratfit._sampling import check_protocol
 from ratfit._speed import available
 from ratfit.gallery import card
@@ -35,10 +35,10 @@ from ratfit.report.paper.measurements import (
 )
 from ratfit.report.paper.page import command, document_of, overview
 from ratfit.report.paper.results import Results, to_json_object
-from ratfit.report.paper.rows import plan, rows
 from ratfit.report.paper.smith_part import smith_part
 from ratfit.report.paper.text import section_text
 from ratfit.report.progress import progress
+from ratfit.report.rows import Book, Measurement, Planned, plan, rows
 from ratfit.report.text import published_object, recorded
 from ratfit.report.write import folder_for, write_document
 
@@ -90,19 +90,41 @@ def _said(asked: Asked, parts: dict[str, Section]) -> Results:
     results = Results(_derived())
     errors, times = _tasks(results.derived, asked)
     path = asked.out / "rows.jsonl"
-    plans = plan(path, [*errors, *times], asked.resume)
-    about = _about(results.derived, asked)
+    book = Book(path, asked.resume)
+    if not asked.resume:
+        _begin_anew(path)
+    measurements = _measurements([*errors, *times], _about(results.derived, asked))
+    planned = list(zip([*errors, *times], plan(measurements, book), strict=True))
     for place in (*(each.card.place for each in results.derived), PLACE):
-        own = [each for each in plans[: len(errors)] if each.task.place == place]
-        results = replace(results, measured=(*results.measured, *rows(own, path, about)))
+        own = [(task, each) for task, each in planned[: len(errors)] if task.place == place]
+        results = replace(results, measured=(*results.measured, *_rows(own, book)))
         say(place, _place_part(results, place))
     say("closest", closest_part(results.findings, results.epsilons))
     say("common", common_part(*results.ways, results.epsilons))
-    results = replace(results, measured=(*results.measured, *rows(plans[len(errors) :], path, about)))
+    results = replace(results, measured=(*results.measured, *_rows(planned[len(errors) :], book)))
     say("gamma", gammas_part(results.timed, results.gammas))
     say("smith", smith_part(results.of(card("eq19").place)))
     say("materials", materials_part())
     return results
+
+
+def _begin_anew(path: Path) -> None:
+    """Takes the rows of an earlier run away, and its state; a file of something else is refused and stays."""
+    read_rows(path)
+    path.unlink(missing_ok=True)
+    drop_checkpoint(path)
+
+
+def _measurements(tasks: Sequence[Task], about: Callable[[Task], Mapping[str, Any]]) -> list[Measurement]:
+    titles = [f"{task.place}, {number}/{len(tasks)}: {task.words}" for number, task in enumerate(tasks, 1)]
+    return [
+        Measurement(task.job, task.how, task.backends, title, about(task))
+        for task, title in zip(tasks, titles, strict=True)
+    ]
+
+
+def _rows(planned: Sequence[tuple[Task, Planned]], book: Book) -> Iterator[tuple[Task, Row]]:
+    return ((task, row) for task, each in planned for row in rows(each, book))
 
 
 def lead(samples: int, seed: int) -> str:

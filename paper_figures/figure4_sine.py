@@ -40,8 +40,8 @@ def data() -> Sine:
 
 def draw(found: Sine, width: float = style.PAGE) -> Figure:
     fraction = found.fraction
-    with style.sheet(width, 40 + 0.42 * width) as figure:
-        panels = figure.subplot_mosaic([["true", "fraction"], ["error", "error"]], height_ratios=(3, 2))
+    with style.sheet(width, 54 + 0.36 * width) as figure:
+        panels = figure.subplot_mosaic([["true", "fraction"], ["error", "error"]], height_ratios=(5, 4))
         for name, title, heights in (
             ("true", r"True function: $\sin x$", fraction.exact),
             ("fraction", "Rational approximation: Eq. 12", fraction.fit),

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from ratfit.plot.text import mathematics, significant, text_width  # noqa: F401  # names for figures elsewhere
+from ratfit.plot.text import text_width
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

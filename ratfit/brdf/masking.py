@@ -23,7 +23,7 @@ def torrance_sparrow(t: Expr, u: Expr, v: Expr, v_prime: Expr) -> Expr:
 
     Arguments: t, v, v_prime in [-1, 1], 0 where one of them is not positive; u in [0, 1].
     Limits: none as u, v, v' go to 0 together; where u is 0 and t, v, v' are not, which no vectors have, it is 1.
-    Source: torrance1967, cook1981; schlick1994 Eq. 16, which is 0/0 at u = 0 where t v = 0; gribaudo2024 ("microfacet"
+    Source: torrance1967, cook1981; schlick1994 Eq. 16, which is 0/0 at u = 0 where t v = 0; polimi2024 ("microfacet"
     G) is the same without the conditions on signs.
     """
     lowest = 2 * _positive(t) * Min(_positive(v), _positive(v_prime))
@@ -31,7 +31,7 @@ def torrance_sparrow(t: Expr, u: Expr, v: Expr, v_prime: Expr) -> Expr:
 
 
 def torrance_sparrow_as_printed(t: Expr, u: Expr, v: Expr, v_prime: Expr) -> Expr:
-    """The same as schlick1994 Eq. 16 and gribaudo2024 print it: 0/0 at u = 0, and below 0 under the horizon."""
+    """The same as schlick1994 Eq. 16 and polimi2024 print it: 0/0 at u = 0, and below 0 under the horizon."""
     return Min(1, 2 * t * v / u, 2 * t * v_prime / u)
 
 
@@ -42,7 +42,7 @@ def smith(v: Expr, m: Expr) -> Expr:
     that face the viewer; its slope at v = 0 is sqrt(pi/2)/m.
 
     Arguments: v in [-1, 1], m the RMS slope along one axis.
-    Source: smith1967 Eqs. 22 to 24; schlick1994 Eq. 18 is meant to be this and is not, see `smith_as_printed`.
+    Source: smith1967; schlick1994 Eq. 18 is meant to be this and is not, see `smith_as_printed`.
     """
     a = _slope_ratio(v, m * _sine(v, 2))
     return _above(v, a * (1 + erf(a)) / (2 * (a + _hidden(a))))
@@ -67,7 +67,7 @@ def beckmann_lambda(v: Expr, alpha: Expr) -> Expr:
     Arguments: v in [-1, 1], alpha the two-dimensional RMS slope.
     Limits: infinite for v <= 0; 0 from v = 1 on. It is a difference: 1 + Lambda is right to the last digits, Lambda
     itself loses 2 a**2 ulp and as much again by the exponential of a**2.
-    Source: heitz2014 Eq. 66 (smith1967 Eq. 23).
+    Source: heitz2014 Eq. 66, smith1967.
     """
     a = _slope_ratio(v, alpha * _sine(v))
     return Piecewise((oo, v <= 0), (_hidden(a) / a, True))
@@ -80,7 +80,7 @@ def beckmann(v: Expr, alpha: Expr) -> Expr:
     Its slope at v = 0 is sqrt(2 pi)/m = 2 sqrt(pi)/alpha, twice that of `smith`.
 
     Arguments: v in [-1, 1], alpha the two-dimensional RMS slope.
-    Source: walter2007 Eq. 26, heitz2014 Eqs. 43 and 66.
+    Source: walter2007 Eq. 26, heitz2014 Eq. 66.
     """
     a = _slope_ratio(v, alpha * _sine(v))
     return _above(v, a / (a + _hidden(a)))
@@ -103,7 +103,7 @@ def beckmann_rational(v: Expr, alpha: Expr) -> Expr:
     neither.
 
     Arguments: v in [-1, 1], alpha the two-dimensional RMS slope.
-    Source: walter2007 Eq. 27, digipen (Beckmann's G1).
+    Source: walter2007 Eq. 27, microfacet (Beckmann's G1).
     """
     return _rational(v, alpha, (1259 - sqrt(1081)) / 792)
 
@@ -114,7 +114,7 @@ def beckmann_rational_as_printed(v: Expr, alpha: Expr) -> Expr:
     It is 1 + 6.13e-5 at its greatest, near a = 1.589, and falls by 5.70e-5 to 1 at a = 1.6.
 
     Arguments: v in [-1, 1], alpha the two-dimensional RMS slope.
-    Source: walter2007 Eq. 27, digipen (Beckmann's G1), which lacks the 0 for v <= 0.
+    Source: walter2007 Eq. 27, microfacet (Beckmann's G1), which lacks the 0 for v <= 0.
     """
     return _rational(v, alpha, Rational(8, 5))
 
@@ -125,7 +125,7 @@ def phong(v: Expr, exponent: Expr) -> Expr:
     The true G1 of Phong's distribution has no closed form; this one is poor for small exponents.
 
     Arguments: v in [-1, 1], exponent from 0 on, greater for smoother surfaces.
-    Source: digipen (Phong's G1), walter2007 after Eq. 30.
+    Source: microfacet (Phong's G1), walter2007.
     """
     return beckmann_rational(v, sqrt(2 / (exponent + 2)))
 
@@ -150,7 +150,7 @@ def ggx(v: Expr, alpha: Expr) -> Expr:
     """G1 of GGX: 2/(1 + sqrt(1 + alpha**2 tan(theta)**2)).
 
     Arguments: v in [-1, 1], alpha GGX's roughness.
-    Source: walter2007 Eq. 34; digipen and gribaudo2024 print this one function in two ways, see `ggx_as_printed`.
+    Source: walter2007 Eq. 34; microfacet and polimi2024 print this one function in two ways, see `ggx_as_printed`.
     """
     p, _, root = _ggx_parts(v, alpha)
     return _above(v, 2 * p / (p + root))
@@ -159,7 +159,7 @@ def ggx(v: Expr, alpha: Expr) -> Expr:
 def ggx_as_printed(v: Expr, alpha: Expr) -> Expr:
     """The same without the condition on v: as large below the horizon as above, and without a value at v = 0.
 
-    Source: gribaudo2024 (g_GGX); digipen's, with tan(theta) = sqrt(1 - v**2)/v put in, is this one.
+    Source: polimi2024 (g_GGX); microfacet's, with tan(theta) = sqrt(1 - v**2)/v put in, is this one.
     """
     return 2 / (1 + sqrt(1 + alpha**2 * (1 - v**2) / v**2))
 
@@ -201,7 +201,7 @@ def implicit(v: Expr, v_prime: Expr) -> Expr:
     """G = v v', what it means to set the visibility term G/(v v') to 1: no roughness, and too dark at grazing angles.
 
     Arguments: v, v_prime in [-1, 1].
-    Source: digipen (visibility, the simple approximation).
+    Source: microfacet (visibility, the simple approximation).
     """
     return _both_above(v, v_prime, _held(v) * _held(v_prime))
 
@@ -213,7 +213,7 @@ def kelemen(u: Expr, v: Expr, v_prime: Expr) -> Expr:
 
     Arguments: u in [0, 1], v, v_prime in [-1, 1].
     Limits: none as u, v, v' go to 0 together.
-    Source: kelemen2001; smoothie (the geometric term); digipen (visibility, the better approximation).
+    Source: kelemen2001; smoothie (the geometric term); microfacet (visibility, the better approximation).
     """
     above, above_prime = _positive(v), _positive(v_prime)
     least = Max(u, (above + above_prime) / 2)
@@ -224,7 +224,7 @@ def kelemen(u: Expr, v: Expr, v_prime: Expr) -> Expr:
 def kelemen_visibility(u: Expr) -> Expr:
     """G/(v v') of `kelemen`: 1/u**2, infinite at u = 0.
 
-    Source: digipen (visibility, the better approximation).
+    Source: microfacet (visibility, the better approximation).
     """
     return 1 / u**2
 
@@ -233,7 +233,7 @@ def separable(one_sided: Callable[[Expr, Expr], Expr], v: Expr, v_prime: Expr, r
     """G = G1(v) G1(v'): seen and lit as if the two had nothing to do with each other.
 
     Arguments: one_sided, a function of this module with the arguments cosine and roughness; the two cosines; roughness.
-    Source: schlick1994 Eq. 17; digipen ("Smith form"); gribaudo2024 (GGX).
+    Source: schlick1994 Eq. 17; microfacet ("Smith form"); polimi2024 (GGX).
     """
     return one_sided(v, roughness) * one_sided(v_prime, roughness)
 

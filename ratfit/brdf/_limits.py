@@ -13,7 +13,7 @@ def guarded(formula: Callable[[Expr], Expr], x: Expr, limit: Expr, where: Boolea
     So where the condition holds the formula is given a harmless value in place of x.
 
     Arguments: the formula as a function of x; x, a symbol or an expression; its limit; where the limit is taken,
-    a condition; harmless, any value at which formula and its derivative are finite.
+    a condition free of Piecewise, which sympy would fold into what arrays do not have; harmless, any value at which formula and its derivative are finite.
     Returns: an expression.
     """
     inside = Piecewise((harmless, where), (x, True))

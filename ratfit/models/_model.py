@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import sympy as sp
@@ -11,7 +12,7 @@ import sympy as sp
 from ratfit._lower import lower
 from ratfit._parse import RatfitError, nearest
 from ratfit._target import Parameter
-from ratfit.models.directions import LETTERS, V_PRIME, V, as_directions, check_directions, cosines, library
+from ratfit.models.directions import LETTERS, V_PRIME, V, as_directions, check_directions, cosines, library, traced
 
 
 @dataclass(frozen=True)
@@ -38,22 +39,26 @@ class Model:
 
         **Arguments:** `view` and `light`, unit directions away from the surface, arrays of shape (..., 3) whose leading
         axes broadcast, NumPy or JAX, normal +z and tangent +x; `values`, parameters by name, numbers or arrays that
-        broadcast against the leading axes, those left out at their `defaults`. `strict` refuses directions that are
-        not of unit length or not above the horizon, where otherwise the reflectance is 0.
+        broadcast against the leading axes, those left out at their `defaults`. Colours are parameters of shape (3,)
+        against directions of shape (..., 1, 3). `strict` refuses directions that are not of unit length or not above
+        the horizon, where otherwise the reflectance is 0; it looks at numbers, so not inside jit, grad or vmap.
 
-        **Returns** an array of the leading shape, in the dtype of the directions. **Fails** with `RatfitError` for
-        shapes that do not go together, and for a parameter that is unknown or outside its range.
+        **Returns** an array of the shape that the leading axes and the parameters broadcast to, in the dtype of the
+        directions: on JAX if one of them is. Inside a transformation of JAX the directions and the parameters may be
+        traced; the range of a traced parameter is not checked.
+        **Fails** with `RatfitError` for shapes that do not go together, and for a parameter that is unknown or outside
+        its range.
         """
         view, light = as_directions(view, "view"), as_directions(light, "light")
         if strict:
             check_directions(view, "view")
             check_directions(light, "light")
         known = self.settings(values)
-        backend, numpy = library(view, light)
+        backend, numpy = library(view, light, *known.values())
         try:
-            letters = cosines(view, light)
+            letters = cosines(numpy.asarray(view), numpy.asarray(light))
             numpy.broadcast_shapes(letters[0].shape, *(numpy.shape(value) for value in known.values()))
-        except ValueError as error:
+        except (ValueError, TypeError) as error:  # NumPy's and JAX's word for shapes that do not broadcast
             shapes = ", ".join(str(numpy.shape(value)) for value in (view, light, *known.values()))
             raise RatfitError(
                 f"{self.name}: shapes {shapes} do not broadcast (directions without their last)"
@@ -62,7 +67,7 @@ class Model:
         typed = (numpy.asarray(known[p.name], letters[0].dtype) for p in self.parameters)
         return function(*letters, *typed)
 
-    @property
+    @cached_property
     def above_horizon(self) -> sp.Expr:
         """The reflectance for any pair of directions: 0 where one is at the horizon or below it."""
         inside = sp.And(V > 0, V_PRIME > 0)
@@ -70,17 +75,26 @@ class Model:
         return sp.Piecewise((self.reflectance.xreplace(harmless), inside), (0, True))
 
     def settings(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Every parameter with its value, checked. **Fails** with `RatfitError` for unknown or impossible ones."""
-        _, numpy = library()
+        """Every parameter with its value, checked unless traced; `RatfitError` for unknown or impossible ones."""
         names = [p.name for p in self.parameters]
         for name in values:
             if name not in names:
                 there = ", ".join(names) or "none"
                 raise RatfitError(f"{self.name} has no parameter {name}{nearest(name, names)}; it has: {there}")
         known = {**self.defaults, **values}
-        for parameter in self.parameters:
-            low, high = float(parameter.low), float(parameter.high)
-            value = numpy.asarray(known[parameter.name], float)
-            if not bool(numpy.all((value >= low) & (value <= high))):
-                raise RatfitError(f"{self.name}: {parameter.name} = {known[parameter.name]} is outside [{low}, {high}]")
-        return {name: known[name] for name in names}
+        return {p.name: self._checked(p, known[p.name]) for p in self.parameters}
+
+    def _checked(self, parameter: Parameter, value: Any) -> Any:
+        """The value as an array inside the range; a traced one as it is."""
+        if traced(value):
+            return value
+        _, numpy = library(value)
+        array = numpy.asarray(value)
+        if numpy.issubdtype(array.dtype, numpy.integer):
+            array = array.astype(float)
+        if not numpy.issubdtype(array.dtype, numpy.floating):
+            raise RatfitError(f"{self.name}: {parameter.name} = {value!r} is not a real number or an array of them")
+        low, high = (array.dtype.type(float(end)) for end in (parameter.low, parameter.high))  # 1/100 of float32 too
+        if not bool(numpy.all((array >= low) & (array <= high))):
+            raise RatfitError(f"{self.name}: {parameter.name} = {value} is outside [{low:g}, {high:g}]")
+        return array

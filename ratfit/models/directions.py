@@ -41,21 +41,43 @@ def as_directions(given: Any, what: str) -> Any:
     return array if numpy.issubdtype(array.dtype, numpy.floating) else array.astype(float)
 
 
+def traced(value: Any) -> bool:
+    """Whether a value is a placeholder of a JAX transformation (jit, grad, vmap), which has no number to look at."""
+    jax = sys.modules.get("jax")
+    return jax is not None and isinstance(value, jax.core.Tracer)
+
+
 def cosines(view: Any, light: Any) -> tuple[Any, ...]:
     """t, u, v, v' and w of pairs of unit directions, of the shape that both broadcast to without the last axis.
 
-    At N = H, where H has no azimuth, w is 1; at V' = -V, where there is no H, t is 0.
+    None is above 1, whatever the rounding. At N = H, where H has no azimuth, w is 1; at V' = -V, where there is no H,
+    t is 0.
     """
     _, numpy = library(view, light)
     half = view + light
     x, y, z = (half[..., axis] for axis in range(3))
-    across = x * x + y * y
-    square = across + z * z
-    length = _where_positive(numpy, square, numpy.sqrt, 0)
-    t = _where_positive(numpy, length, lambda known: numpy.clip(z / known, 0, 1), 0)
-    w = _where_positive(numpy, across, lambda known: numpy.clip(numpy.abs(x) / numpy.sqrt(known), 0, 1), 1)
+    length = _where_positive(numpy, x * x + y * y + z * z, numpy.sqrt, 0)
+    t = _where_positive(numpy, length, lambda known: numpy.maximum(z / known, 0), 0)
+    w = _azimuth_cosine(numpy, abs(x), abs(y))
     v, v_prime = numpy.broadcast_arrays(view[..., 2], light[..., 2])
-    return t, numpy.clip(length / 2, 0, 1), v, v_prime, w
+    return tuple(_at_most_one(numpy, cosine) for cosine in (t, length / 2, v, v_prime, w))
+
+
+def _azimuth_cosine(numpy: Any, x: Any, y: Any) -> Any:
+    """x/sqrt(x^2 + y^2) of coordinates that are not negative, by powers of the greater one: no square underflows."""
+
+    def cosine(greater: Any) -> Any:
+        along, across = x / greater, y / greater
+        square = numpy.where(greatest > 0, along * along + across * across, 1)  # 1 or more
+        return along / numpy.sqrt(square)
+
+    greatest = numpy.maximum(x, y)
+    return _where_positive(numpy, greatest, cosine, 1)
+
+
+def _at_most_one(numpy: Any, cosine: Any) -> Any:
+    """A cosine without what rounding has put above 1; unlike `minimum` it keeps the whole gradient at 1 itself."""
+    return numpy.where(cosine > 1, 1, cosine).astype(cosine.dtype)
 
 
 def _where_positive(numpy: Any, values: Any, function: Any, otherwise: float) -> Any:

@@ -12,8 +12,9 @@ def guarded(formula: Callable[[Expr], Expr], x: Expr, limit: Expr, where: Boolea
     An array computes both branches, and a gradient multiplies the branch not taken by zero: nan times zero is nan.
     So where the condition holds the formula is given a harmless value in place of x.
 
-    Arguments: the formula as a function of x; x, a symbol or an expression; its limit; where the limit is taken,
-    a condition free of Piecewise, which sympy would fold into what arrays do not have; harmless, any value at which formula and its derivative are finite.
+    Arguments: the formula as a function of x; x, a symbol or an expression; its limit; where the limit is taken, a
+    condition free of Piecewise (sympy folds it into what arrays do not have); harmless, any value at which the formula
+    and its derivative are finite.
     Returns: an expression.
     """
     inside = Piecewise((harmless, where), (x, True))

@@ -6,10 +6,10 @@ comes from, which is transparent: eta < 1 where that is the denser one. f in [0,
 Every F lies in [0, 1], but for the printed formulas that are kept because they are wrong.
 
 Accuracy in float64, measured on a million places of each kind: every F in [0, 1] is within 4 ulp of 1, 9e-16, of its
-value. In ulp of F itself a metal's is within 4 at 99.9 places of 100 and within 8 at all; that of glass is the square of
-a small difference, within 4 at 97 places of 100 and within 14 at all. Both hold away from the critical angle, where |w|
-of `conductor` is above 0.45. An exponential adds the error of its argument: for f = 0, 5 ulp in `spherical_gaussian`, 13
-in `karis` and `smoothie`; for f >= 0.01, 4 and 6.
+value. In ulp of F itself a metal's is within 4 at 99.9 places of 100 and within 8 at all; that of glass is the square
+of a small difference, within 4 at 97 places of 100 and within 14 at all. Both hold away from the critical angle, where
+|w| of `conductor` is above 0.45. An exponential adds the error of its argument: for f = 0, 5 ulp in
+`spherical_gaussian`, 13 in `karis` and `smoothie`; for f >= 0.01, 4 and 6.
 """
 
 from __future__ import annotations

@@ -11,12 +11,23 @@ from __future__ import annotations
 import sys
 from typing import Any
 
+import sympy as sp
+
 from ratfit._parse import RatfitError
 from ratfit._target import parameter
 
 T, U, V, V_PRIME, W = (parameter(name, 0, 1) for name in ("t", "u", "v", "v_prime", "w"))
 LETTERS = (T, U, V, V_PRIME, W)
 """The symbols that a model's formula is written in, beside its parameters."""
+
+V_DOT_L = 2 * U**2 - 1
+"""The cosine of the angle between the two directions."""
+
+R_DOT_V = 2 * V * V_PRIME - V_DOT_L
+"""The cosine of the angle between the view and the mirror image of the light, R = 2 (N.L) N - L; -1 to 1."""
+
+HORIZON = sp.Rational(1, 10**14)
+"""Cosines below this one count as this one where a reflectance divides by them: no float overflows, nor a gradient."""
 
 UNIT = 1e-3
 """How far from 1 the length of a direction may be in strict mode."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from sympy import Expr, Piecewise
+from sympy import Expr, Piecewise, S
 from sympy.logic.boolalg import Boolean
 
 
@@ -17,5 +17,6 @@ def guarded(formula: Callable[[Expr], Expr], x: Expr, limit: Expr, where: Boolea
     and its derivative are finite.
     Returns: an expression.
     """
-    inside = Piecewise((harmless, where), (x, True))
+    # A sum: of a bare piece sympy takes a power into the branches, and the formula would meet x after all.
+    inside = x + Piecewise((harmless - x, where), (S.Zero, True))
     return Piecewise((limit, where), (formula(inside), True))

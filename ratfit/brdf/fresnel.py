@@ -42,8 +42,8 @@ def conductor(u: Expr, eta: Expr, kappa: Expr) -> Expr:
     p = (eta - 1) * (eta + 1) + u**2 - kappa**2  # the real part of w**2, in an order that is exact for an index near 1
     q2 = p**2 + 4 * eta**2 * kappa**2
     q = sqrt(q2)  # |w|**2
-    # The denominator is q - p where it is taken, and elsewhere not 0, as q - p is for every dielectric.
-    a = sqrt(Piecewise(((q + p) / 2, p >= 0), (2 * eta**2 * kappa**2 / (q - Min(p, 0)), True)))
+    # Each branch is finite, with finite slopes, where the other is taken, though there q + p or q - p may be 0.
+    a = Piecewise((sqrt((q + Max(p, -q / 2)) / 2), p >= 0), (eta * kappa * sqrt(2 / (q - Min(p, q / 2))), True))
     size, s2 = u**2 + q, (1 - u) * (1 + u)
     product = ((eta - 1) ** 2 + kappa**2) * ((eta + 1) ** 2 + kappa**2)  # |w - u|**2 |w + u|**2
     # Where |w| is near u, as for glass, |w - u|**2 cancels, and the product does not.
@@ -77,7 +77,7 @@ def dielectric(u: Expr, eta: Expr) -> Expr:
 
     def refracted(g2: Expr) -> Expr:
         g, s2 = sqrt(g2), (1 - u) * (1 + u)
-        amplitude = excess / (excess + 2 * u * (u + g))  # (g - u)/(g + u), whose g - u cancels where eta is near 1
+        amplitude = excess / (g2 + u * (u + 2 * g))  # (g - u)/(g + u), whose g - u cancels where eta is near 1
         return amplitude**2 * (1 + ((g * u - s2) / (g * u + s2)) ** 2) / 2
 
     return guarded(refracted, excess + u**2, S.One, excess + u**2 <= 0, S.One)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import sympy as sp
@@ -12,7 +11,7 @@ import sympy as sp
 from ratfit._lower import lower
 from ratfit._parse import RatfitError, nearest
 from ratfit._target import Parameter
-from ratfit.models.directions import LETTERS, V_PRIME, V, as_directions, check_directions, cosines, library, traced
+from ratfit.models.directions import LETTERS, as_directions, check_directions, cosines, library, traced
 
 
 @dataclass(frozen=True)
@@ -63,16 +62,17 @@ class Model:
             raise RatfitError(
                 f"{self.name}: shapes {shapes} do not broadcast (directions without their last)"
             ) from error
-        function = lower(self.above_horizon, [*LETTERS, *self.parameters], backend)
-        typed = (numpy.asarray(known[p.name], letters[0].dtype) for p in self.parameters)
-        return function(*letters, *typed)
+        return self._above_horizon(backend, letters, known)
 
-    @cached_property
-    def above_horizon(self) -> sp.Expr:
-        """The reflectance for any pair of directions: 0 where one is at the horizon or below it."""
-        inside = sp.And(V > 0, V_PRIME > 0)
-        harmless = {letter: sp.Piecewise((letter, inside), (sp.S.Half, True)) for letter in LETTERS}
-        return sp.Piecewise((self.reflectance.xreplace(harmless), inside), (0, True))
+    def _above_horizon(self, backend: str, letters: tuple[Any, ...], known: Mapping[str, Any]) -> Any:
+        """The formula where both directions are above the horizon; elsewhere 0, and no gradient comes from there."""
+        _, numpy = library(*letters, *known.values())
+        _, _, v, v_prime, _ = letters
+        inside = (v > 0) & (v_prime > 0)
+        harmless = (numpy.where(inside, letter, 0.5).astype(letter.dtype) for letter in letters)
+        typed = (numpy.asarray(known[p.name], v.dtype) for p in self.parameters)
+        value = lower(self.reflectance, [*LETTERS, *self.parameters], backend)(*harmless, *typed)
+        return numpy.where(inside, value, 0).astype(value.dtype)
 
     def settings(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Every parameter with its value, checked unless traced; `RatfitError` for unknown or impossible ones."""

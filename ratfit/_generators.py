@@ -53,8 +53,15 @@ MOST_TURNS = 2
 
 
 def far_turns(expressions: Iterable[sp.Expr]) -> frozenset[sp.Expr]:
-    """The sines and cosines of angles with a part that is to be turned more than MOST_TURNS times for one of them."""
+    """The sines and cosines of angles with a part that is to be turned more than MOST_TURNS times for one of them.
+
+    None where one stands under a root: that of 1 - cos(5) is a sine, which nobody knows who takes them apart.
+    """
+    expressions = list(expressions)
     calls = {call for e in expressions for call in e.atoms(sp.sin, sp.cos)}
+    powers = {power for e in expressions for power in e.atoms(sp.Pow) if not power.exp.is_Integer}
+    if any(power.has(sp.sin, sp.cos) for power in powers):
+        return frozenset()
     parts = Generators()
     parts.register_angles(calls)
     far = {monomial for call in calls for monomial, turns in parts.turns(call.args[0]) if turns > MOST_TURNS}

@@ -14,6 +14,7 @@ import sympy as sp
 
 import ratfit as rf
 from ratfit._diagnosis import explained
+from ratfit._generators import far_turns
 from ratfit._inline import Words, problem_of_words
 from ratfit._solver.nonlinear import search, tabulated
 
@@ -271,6 +272,13 @@ def test_sines_of_places_far_in_parts_are_left_as_they_are(far):
     for place in map(sp.sympify, places):
         assert abs(sp.N(fit.expression.subs(x, place) - sp.sin(place), 60)) < 1e-50
         assert abs(sp.N(fit.expression.diff(x).subs(x, place) - sp.cos(place), 60)) < 1e-50
+
+
+def test_which_sines_are_taken_apart():
+    near, far = sp.sin(HALF), sp.cos(5 * HALF)
+    assert far_turns([near * far]) == {near, far}
+    assert not far_turns([near, sp.cos(1)]) and not far_turns([sp.sin(sp.pi / 7), sp.cos(5 * sp.pi / 7)])
+    assert not far_turns([near, sp.sqrt(1 - far)])  # that root is a sine
 
 
 def test_what_is_undecided_is_no_clash():

@@ -9,6 +9,7 @@ import click
 
 import ratfit
 from ratfit._parse import RatfitError
+from ratfit.cli.claims import claims
 from ratfit.cli.derive import derive
 from ratfit.cli.measure import bench, paper, report
 from ratfit.cli.problems import check, gallery, init
@@ -57,5 +58,5 @@ def cli(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for _command in (derive, study, bench, paper, report, gallery, init, check):
+for _command in (derive, study, bench, paper, report, gallery, init, check, claims):
     cli.add_command(_command)

@@ -1,0 +1,45 @@
+"""All claims, in the order of the documents, and the choice among them by words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ratfit._parse import RatfitError, nearest
+from ratfit.claims import (
+    fresnel,
+    method,
+    smoothie_fresnel,
+)
+from ratfit.claims._claim import DOCUMENTS, Claim
+
+_THEMES = (
+    method,
+    fresnel,
+    smoothie_fresnel,
+)
+
+
+def claims() -> tuple[Claim, ...]:
+    """Every claim of the ledger: document by document, in each by theme."""
+    everything = [claim for theme in _THEMES for claim in theme.CLAIMS]
+    return tuple(claim for document in DOCUMENTS for claim in everything if claim.document == document)
+
+
+def selected(words: Sequence[str]) -> tuple[Claim, ...]:
+    """The claims that the words name, in the ledger's order; all of them for no words.
+
+    A word is an id (`S-28-A`), a document (`PM`), or how ids begin (`S-4.2`); capitals do not matter. **Fails** with
+    `RatfitError`, offering the nearest, for a word that names nothing.
+    """
+    ledger = claims()
+    chosen = {claim.id for word in words for claim in _named(word, ledger)}
+    return tuple(claim for claim in ledger if not words or claim.id in chosen)
+
+
+def _named(word: str, ledger: Sequence[Claim]) -> Iterator[Claim]:
+    wanted = word.casefold()
+    found = [c for c in ledger if c.id.casefold() == wanted or c.id.casefold().startswith(f"{wanted}-")]
+    if not found:
+        known = [*DOCUMENTS, *(claim.id for claim in ledger)]
+        raise RatfitError(f"no claim {word!r}{nearest(word, known)}; `ratfit claims` lists all, PM those of one source")
+    yield from found

@@ -4,9 +4,11 @@ v = N.V and v' = N.L are the cosines of the two directions, t = N.H, u = H.V. Ro
 one axis, or alpha = sqrt(2) m, the RMS slope over both axes (Beckmann's letter; GGX has an alpha of its own). The
 variable of every Smith function is a = cot(theta)/alpha = v/(alpha sqrt(1 - v**2)).
 
-What holds for every function of v here: it is 0 for v <= 0; from v = 1 on, and for a roughness of 0, it is 1 (DP warns
-that N.V may be rounded to more than 1). Roughness may be any number from 0 on. No argument gives nan. Gradients are
-finite between v = 0 and v = 1, as long as the square of the greater one of v and roughness is no underflow.
+What holds for every function of v here, those `_as_printed` of `torrance_sparrow` and `ggx` left out: it is 0 for
+v <= 0; from v = 1 on, which rounding may bring about, and for a roughness of 0 it is 1; it is never nan for a roughness
+from 0 on whose square is finite. Gradients are finite where the squares of v and of v/roughness do not underflow.
+float64 is within 4 ulp where v is in [0.02, 0.98] and within 5 in all of (0, 1); Lambda of GGX within 6, of a Gaussian
+surface see there. No exponential magnifies an error here: where it is small it is added to something that is not.
 """
 
 from collections.abc import Callable
@@ -27,7 +29,8 @@ def torrance_sparrow(t: Expr, u: Expr, v: Expr, v_prime: Expr) -> Expr:
     G) is the same without the conditions on signs.
     """
     lowest = 2 * _positive(t) * Min(_positive(v), _positive(v_prime))
-    return Piecewise((0, Or(t <= 0, v <= 0, v_prime <= 0, u < 0)), (lowest / Max(u, lowest), True))
+    hidden = Or(t <= 0, u < 0, t * Min(v, v_prime) <= 0)  # the product too, which may underflow to 0
+    return Piecewise((0, hidden), (lowest / Max(u, lowest), True))
 
 
 def torrance_sparrow_as_printed(t: Expr, u: Expr, v: Expr, v_prime: Expr) -> Expr:
@@ -65,8 +68,8 @@ def beckmann_lambda(v: Expr, alpha: Expr) -> Expr:
     """Lambda of a Gaussian surface: (exp(-a**2)/(a sqrt(pi)) - erfc(a))/2, hidden area over visible area.
 
     Arguments: v in [-1, 1], alpha the two-dimensional RMS slope.
-    Limits: infinite for v <= 0; 0 from v = 1 on. It is a difference: 1 + Lambda is right to the last digits, Lambda
-    itself loses 2 a**2 ulp and as much again by the exponential of a**2.
+    Limits: infinite for v <= 0; 0 from v = 1 on. It is a difference: 1 + Lambda is right to the last digits,
+    Lambda itself to 10 ulp for a < 1/2, some 50 for a < 2, and thousands at a = 10, where it is exp(-100).
     Source: heitz2014 Eq. 66, smith1967.
     """
     a = _slope_ratio(v, alpha * _sine(v))
@@ -93,7 +96,7 @@ def beckmann_correlated(v: Expr, v_prime: Expr, alpha: Expr) -> Expr:
     Source: heitz2014 Eqs. 66 and 99.
     """
     a, b = (_slope_ratio(cosine, alpha * _sine(cosine)) for cosine in (v, v_prime))
-    return _both_above(v, v_prime, a * b / (a * b + b * _hidden(a) + a * _hidden(b)))
+    return _both_above(v, v_prime, 1 / (1 + _hidden(a) / a + _hidden(b) / b))
 
 
 def beckmann_rational(v: Expr, alpha: Expr) -> Expr:
@@ -111,7 +114,7 @@ def beckmann_rational(v: Expr, alpha: Expr) -> Expr:
 def beckmann_rational_as_printed(v: Expr, alpha: Expr) -> Expr:
     """Walter's rational G1 as it is printed, the fraction for all a < 1.6 and 1 from there on.
 
-    It is 1 + 6.13e-5 at its greatest, near a = 1.589, and falls by 5.70e-5 to 1 at a = 1.6.
+    It is 1 + 6.13e-5 at its greatest, near a = 1.589, and falls by 2/35121 = 5.69e-5 to 1 at a = 1.6.
 
     Arguments: v in [-1, 1], alpha the two-dimensional RMS slope.
     Source: walter2007 Eq. 27, microfacet (Beckmann's G1), which lacks the 0 for v <= 0.
@@ -172,7 +175,7 @@ def ggx_correlated(v: Expr, v_prime: Expr, alpha: Expr) -> Expr:
     """
     p, _, root = _ggx_parts(v, alpha)
     q, _, root_prime = _ggx_parts(v_prime, alpha)
-    return _both_above(v, v_prime, 2 * p * q / (q * root + p * root_prime))
+    return _both_above(v, v_prime, 2 / (root / p + root_prime / q))
 
 
 def schlick(v: Expr, m: Expr) -> Expr:
@@ -216,9 +219,10 @@ def kelemen(u: Expr, v: Expr, v_prime: Expr) -> Expr:
     Source: kelemen2001; smoothie (the geometric term); microfacet (visibility, the better approximation).
     """
     above, above_prime = _positive(v), _positive(v_prime)
-    least = Max(u, (above + above_prime) / 2)
-    ratio, ratio_prime = Min(2, above / least), Min(2, above_prime / least)  # never more: it keeps sympy from v v'/u**2
-    return Piecewise((0, Or(v <= 0, v_prime <= 0, u < 0)), (ratio * ratio_prime, True))
+    twice = Max(2 * u, above + above_prime)
+    # The minima with 2 change nothing: they keep sympy from writing v v'/u**2, whose parts underflow.
+    ratio, ratio_prime = Min(2, 2 * above / twice), Min(2, 2 * above_prime / twice)
+    return Piecewise((0, Or(v <= 0, v_prime <= 0, u < 0)), (Min(1, ratio * ratio_prime), True))
 
 
 def kelemen_visibility(u: Expr) -> Expr:

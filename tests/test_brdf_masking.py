@@ -126,17 +126,20 @@ def test_the_closed_forms_are_the_integrals_of_smith(slopes, closed, cosine, alp
 @pytest.mark.parametrize("name", ONE_SIDED)
 def test_one_direction_agrees_with_fifty_digits(name):
     formula, allowed = ONE_SIDED[name]
-    cosines, _, roughness = drawn(300)
+    cosines, _, roughness = drawn(450)
     if name.startswith("phong"):
         roughness = 1 / roughness**2
     with mpmath.workdps(50):
         exact = [formula(mpf(c), mpf(r)) for c, r in zip(cosines, roughness, strict=True)]
-        assert ulp_off(lowered(name)(cosines, roughness), exact) < allowed
+        found = lowered(name)(cosines, roughness)
+        assert ulp_off(found, exact) < allowed
+        away = np.flatnonzero((cosines > 0.02) & (cosines < 0.98))  # from the limits at both ends
+        assert ulp_off(found[away], [exact[place] for place in away]) < 4
 
 
 @pytest.mark.parametrize("name", ONE_SIDED)
 def test_one_direction_in_float32_is_as_good_as_that_allows(name):
-    cosines, _, roughness = drawn(300)
+    cosines, _, roughness = drawn(450)
     kept = cosines < 1 - 1e-7
     values = [x[kept].astype("float32") for x in (cosines, 1 / roughness**2 if name.startswith("phong") else roughness)]
     found = lowered(name)(*values)
@@ -146,7 +149,7 @@ def test_one_direction_in_float32_is_as_good_as_that_allows(name):
 
 @pytest.mark.parametrize("name", CORRELATED)
 def test_two_directions_agree_with_fifty_digits(name):
-    values = drawn(300)
+    values = drawn(450)
     with mpmath.workdps(50):
         hidden = CORRELATED[name]
         exact = [1 / (1 + hidden(mpf(a), mpf(r)) + hidden(mpf(b), mpf(r))) for a, b, r in zip(*values, strict=True)]
@@ -155,7 +158,7 @@ def test_two_directions_agree_with_fifty_digits(name):
 
 @pytest.mark.parametrize("name", LAMBDAS)
 def test_lambda_agrees_with_fifty_digits(name):
-    cosines, _, roughness = drawn(300)
+    cosines, _, roughness = drawn(450)
     with mpmath.workdps(50):
         exact = [LAMBDAS[name](mpf(c), mpf(r)) for c, r in zip(cosines, roughness, strict=True)]
         found = lowered(name)(cosines, roughness)
@@ -221,7 +224,7 @@ def test_the_correlated_form_is_the_mean_over_heights(name, cosine, other, alpha
 
 @pytest.mark.parametrize(("name", "one"), [("beckmann_correlated", "beckmann"), ("ggx_correlated", "ggx")])
 def test_the_correlated_form_lies_between_the_product_and_the_lesser_one(name, one):
-    a, b, roughness = drawn(300)
+    a, b, roughness = drawn(450)
     both, first, second = lowered(name)(a, b, roughness), lowered(one)(a, roughness), lowered(one)(b, roughness)
     assert np.all(both <= np.minimum(first, second) * (1 + 1e-15)) and np.all(both >= first * second * (1 - 1e-15))
     assert np.array_equal(both, lowered(name)(b, a, roughness))

@@ -125,6 +125,22 @@ def shown(value: Any) -> Any:
         case Mapping():
             return ", ".join(f"{count} {name}" for name, count in value.items() if count)
         case sp.Basic():
-            return int(value) if value.is_Integer else str(value)
+            return int(value) if value.is_Integer else str(unguarded(value))
     number = float(value)
     return float(f"{number:.6g}") if number - number == 0 else None
+
+
+def unguarded(formula: sp.Expr) -> sp.Expr:
+    """A formula without its guards, as a reader knows it: of pieces the one in the middle of all ranges."""
+    (middle,) = _places(formula.free_symbols)[3:4]
+    guards = (sp.Piecewise, sp.Max, sp.Min)
+    while found := [each for each in formula.atoms(*guards) if not any(arg.has(*guards) for arg in each.args)]:
+        formula = formula.xreplace({each: _taken(each, middle) for each in found})
+    return formula
+
+
+def _taken(guard: sp.Expr, values: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+    if isinstance(guard, sp.Piecewise):
+        return next((value for value, condition in guard.args if condition.xreplace(values) == sp.true), sp.nan)
+    taken = max if isinstance(guard, sp.Max) else min
+    return taken(guard.args, key=lambda each: sp.N(each.xreplace(values)))

@@ -22,7 +22,7 @@ def albedo(reflectance: sp.Expr, view: float, **parameters: float) -> float:
     of view, in (0, 1], the view in the plane of the tangent; the parameters' values by name. Gauss-Legendre in the
     light's height and midpoints in its azimuth: right to 1e-4 for lobes that are not narrower than 0.2.
     """
-    directions, weights = _hemisphere()
+    directions, weights = hemisphere()
     letters = _letters(reflectance, view, directions)
     known = {symbol: float(parameters[symbol.name]) for symbol in reflectance.free_symbols - set(LETTERS)}
     function = lower(reflectance.xreplace({s: sp.Float(v, 17) for s, v in known.items()}), LETTERS, "numpy")
@@ -37,7 +37,7 @@ def _letters(reflectance: sp.Expr, view: float, directions: Any) -> tuple[Any, .
 
 
 @functools.cache
-def _hemisphere() -> tuple[Any, Any]:
+def hemisphere() -> tuple[Any, Any]:
     """Directions over the hemisphere and the solid angle of each; heights crowd at the horizon."""
     import numpy as np
 
@@ -54,8 +54,8 @@ def _hemisphere() -> tuple[Any, Any]:
 
 
 @functools.cache
-def pairs() -> tuple[Any, ...]:
-    """t, u, v, v' and w of pairs of directions, both uniform over the hemisphere; a fixed draw."""
+def _ends() -> tuple[Any, Any]:
+    """Views and lights, both uniform over the hemisphere; a fixed draw."""
     import numpy as np
 
     draw = np.random.default_rng(1994)
@@ -64,7 +64,23 @@ def pairs() -> tuple[Any, ...]:
         height, phi = draw.random(PAIRS), 2 * np.pi * draw.random(PAIRS)
         sine = np.sqrt(1 - height**2)
         ends.append(np.stack([sine * np.cos(phi), sine * np.sin(phi), height], -1))
-    return cosines(*ends)
+    return ends[0], ends[1]
+
+
+@functools.cache
+def pairs() -> tuple[Any, ...]:
+    """t, u, v, v' and w of pairs of directions."""
+    return cosines(*_ends())
+
+
+def turned(degrees: float, both: bool) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """The letters of all pairs before and after the view, or view and light, are turned about the normal."""
+    import numpy as np
+
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    view, light = _ends()
+    return pairs(), cosines(view @ turn.T, light @ turn.T if both else light)
 
 
 def over_pairs(expression: sp.Expr, **parameters: Any) -> Any:

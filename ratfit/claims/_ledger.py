@@ -8,6 +8,7 @@ from ratfit._parse import RatfitError, nearest
 from ratfit.claims import (
     fresnel,
     method,
+    masking,
     smoothie_fresnel,
 )
 from ratfit.claims._claim import DOCUMENTS, Claim
@@ -15,6 +16,7 @@ from ratfit.claims._claim import DOCUMENTS, Claim
 _THEMES = (
     method,
     fresnel,
+    masking,
     smoothie_fresnel,
 )
 

@@ -132,7 +132,7 @@ def shown(value: Any) -> Any:
 
 def unguarded(formula: sp.Expr) -> sp.Expr:
     """A formula without its guards, as a reader knows it: of pieces the one in the middle of all ranges."""
-    (middle,) = _places(formula.free_symbols)[3:4]
+    middle = {symbol: _value(symbol, sp.S.Half) for symbol in formula.free_symbols}
     guards = (sp.Piecewise, sp.Max, sp.Min)
     while found := [each for each in formula.atoms(*guards) if not any(arg.has(*guards) for arg in each.args)]:
         formula = formula.xreplace({each: _taken(each, middle) for each in found})

@@ -8,6 +8,7 @@ from ratfit._parse import RatfitError, nearest
 from ratfit.claims import (
     fresnel,
     method,
+    distributions,
     masking,
     smoothie_fresnel,
 )
@@ -16,6 +17,7 @@ from ratfit.claims._claim import DOCUMENTS, Claim
 _THEMES = (
     method,
     fresnel,
+    distributions,
     masking,
     smoothie_fresnel,
 )

@@ -77,7 +77,8 @@ def dielectric(u: Expr, eta: Expr) -> Expr:
 
     def refracted(g2: Expr) -> Expr:
         g, s2 = sqrt(g2), (1 - u) * (1 + u)
-        amplitude = excess / (g2 + u * (u + 2 * g))  # (g - u)/(g + u), whose g - u cancels where eta is near 1
+        # Two forms of (g - u)/(g + u): where g is near u, as eta near 1 makes it, g - u cancels.
+        amplitude = Piecewise(((g - u) / (g + u), 6 * u**2 <= excess), (excess / (g2 + u * (u + 2 * g)), True))
         return amplitude**2 * (1 + ((g * u - s2) / (g * u + s2)) ** 2) / 2
 
     return guarded(refracted, excess + u**2, S.One, excess + u**2 <= 0, S.One)

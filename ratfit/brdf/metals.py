@@ -38,11 +38,9 @@ class Material:
 
         Fails with `RatfitError` outside `range`.
         """
-        first, last = self.range
-        if not first <= wavelength <= last:
-            raise RatfitError(
-                f"{self.name} is known from {float(first)} to {float(last)} micrometres, not at {wavelength}"
-            )
+        first, last = map(float, self.range)
+        if not first <= float(wavelength) <= last:
+            raise RatfitError(f"{self.name} is known from {first} to {last} micrometres, not at {wavelength}")
         if self.terms:
             x2 = wavelength**2
             return sqrt(1 + sum(b * x2 / (x2 - c**2) for b, c in self.terms)), S.Zero

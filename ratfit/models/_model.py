@@ -21,7 +21,9 @@ class Model:
     `reflectance` is written in the letters of `ratfit.models.directions` and in `parameters`, and holds above the
     horizon; below it the reflectance is 0. `coherent` is the share that is reflected as a mirror does, in the single
     direction that is no function on arrays; `defaults` gives every parameter a value that shows the model well.
-    `source` is a key of docs/refs.bib and a place there.
+    `source` is a key of docs/refs.bib and a place there. `facets` is the distribution D of a model that has one, per
+    steradian (its integral with the cosine t is to be 1), and `sampler` the name in `ratfit.models.samplers` of the one
+    that draws light for the model's lobe, whose parameters the model has too.
     """
 
     name: str
@@ -32,6 +34,8 @@ class Model:
     defaults: Mapping[str, float] = field(default_factory=dict)
     coherent: sp.Expr = sp.S.Zero
     note: str = ""
+    facets: sp.Expr | None = None
+    sampler: str | None = None
 
     def __call__(self, view: Any, light: Any, *, strict: bool = False, **values: Any) -> Any:
         """The reflectance of pairs of directions.

@@ -5,8 +5,11 @@ the cosine of its azimuth against the tangent. Below the horizon (t < 0) every d
 limit from above, and t above 1 by rounding counts as 1. Values are per steradian: the integral of D(H) N.H over the
 hemisphere is 1. The D of schlick1994 is pi times that (its Eq. 5); its factors Z and A are kept as it has them.
 
-A roughness below `SMOOTH` counts as 0, a Dirac: infinite in its direction, 0 in all others. A Gaussian whose exponent
-is beyond `UNDERFLOW` is 0. What roughness means, from one distribution to the other: `ratfit.brdf.roughness`.
+A roughness below `SMOOTH` counts as 0, a Dirac: infinite in its direction, 0 in all others; nothing is nan. A Gaussian
+whose exponent is beyond `UNDERFLOW` is 0. On arrays in float64 the values are right to 4 units of 2^-52, those of
+`ggx_anisotropic` to 8, and two more for every unit of a Gaussian's exponent, tan^2/alpha^2, or of `blinn`'s logarithm.
+Gradients are finite where there is no Dirac (in float32 for roughness from 1e-6 on). What roughness means in each:
+`ratfit.brdf.roughness`. For calculus take the `ratfit.brdf.interior` of a formula.
 """
 
 from collections.abc import Callable
@@ -44,10 +47,10 @@ def beckmann_rational(t: Expr, m: Expr) -> Expr:
     # x = t - (1 - m) = m - (1 - t): what is subtracted is exact in the form chosen, so x is, near the edge too.
     x = Max(0, Piecewise((t - _complement(m), m > S.Half), (m - _complement(t), True)))
     # The fraction's denominator m^2 - (1 - m) x^2 with 1 - t in place of x loses no digits: all terms are positive.
-    base = rough + _complement(m) * _complement(t) * (rough + x) / rough**2
-    fraction = x / (pi * rough * instead(t, 1, t <= 0) * base**2)
-    edge = Piecewise((1 / pi, m >= 1), (S.Zero, True))
-    return _lobe(t, m < SMOOTH, _dirac(t), Piecewise((edge, t <= 0), (fraction, True)))
+    base = rough + _complement(m) * _complement(t) * (1 + x / rough) / rough
+    fraction = x / (pi * rough * instead(t, 1, t <= (1 - m) / 2) * base**2)
+    constant = Piecewise((1 / pi, t <= 0), (fraction, True))
+    return _lobe(t, m < SMOOTH, _dirac(t), Piecewise((constant, m >= 1), (fraction, True)))
 
 
 def ggx(t: Expr, alpha: Expr) -> Expr:
@@ -68,9 +71,7 @@ def ggx_anisotropic(t: Expr, w: Expr, alpha_x: Expr, alpha_y: Expr) -> Expr:
     Source: heitz2014.
     """
     along, across = _rough(alpha_x), _rough(alpha_y)
-    mean, ratio = sqrt(along) * sqrt(across), across / along
-    spread = w**2 * ratio + (1 - w) * (1 + w) / ratio
-    lobe = 1 / (pi * (mean * t**2 + _sine_squared(t) * spread / mean) ** 2)
+    lobe = 1 / (pi * along * across * (t**2 + _sine_squared(t) * _spread(w, along, across)) ** 2)
     return _lobe(t, Min(alpha_x, alpha_y) < SMOOTH, _line(t, w, alpha_x, alpha_y), lobe)
 
 
@@ -131,8 +132,8 @@ def zenith(t: Expr, r: Expr) -> Expr:
     r in [0, 1]: the constant 1 at r = 1, a Dirac at r = 0. The integral of 2 t Z over [0, 1] is 1.
     Source: schlick1994 Eq. 28, Z, which keeps Eq. 27.
     """
-    root = sqrt(instead(r, 1, r < SMOOTH**2))
-    lobe = 1 / (root * t**2 + _sine_squared(t) / root) ** 2
+    rough = instead(r, 1, r < SMOOTH**2)
+    lobe = 1 / (rough * (t**2 + _sine_squared(t) / rough) ** 2)
     return _lobe(t, r < SMOOTH**2, _dirac(t), lobe)
 
 
@@ -225,7 +226,8 @@ def _complement(t: Expr) -> Expr:
 
 
 def _sine_squared(t: Expr) -> Expr:
-    return _complement(t) * (1 + t)
+    """1 - t^2; where t is near 1 the square would lose what is left, where it is not the product has more to round."""
+    return Piecewise((1 - t**2, t < S.Half), (S.Zero, t > 1), ((1 - t) * (1 + t), True))
 
 
 def _rough(alpha: Expr) -> Expr:

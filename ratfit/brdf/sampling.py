@@ -5,7 +5,7 @@ surface's normal N (a = 1 gives N itself) and by its azimuth, counted from the t
 leaves along L = 2 (V.H) H - V. The sine has a formula of its own: of a narrow lobe the cosine has lost it.
 
 Letters: t = N.H, u = H.V, v = N.V, v_prime = N.L. An elliptical lobe takes its azimuth first, from p = along/across,
-and then the cosine for the alpha at this azimuth (`roughness.alpha_at`); schlick1994's takes its two factors one by one.
+and then the cosine for the alpha at this azimuth (`roughness.alpha_at`); schlick1994's takes its factors one by one.
 """
 
 from sympy import Expr, Min, Piecewise, S, atan2, cos, elliptic_f, elliptic_k, exp, log, pi, sin, sinh, sqrt

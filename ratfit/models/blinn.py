@@ -17,7 +17,8 @@ def normalisation(exponent: sp.Expr) -> sp.Expr:
     8 pi c**(n + 1) (2 c**2 - 1) from sqrt(1/2) to 1, 8 pi (n + 2**(-n/2))/((n + 2)(n + 4)).
     """
     n = exponent
-    return (n + 2) * (n + 4) / (8 * sp.pi * (n + 2 ** (-n / 2)))
+    vanishing = 2 ** (-sp.Min(n, 120) / 2)  # beside n, nothing from there on; 2**(n/2) itself would overflow
+    return (n + 2) * (n + 4) / (8 * sp.pi * (n + vanishing))
 
 
 BLINN = Model(

@@ -29,6 +29,9 @@ R_DOT_V = 2 * V * V_PRIME - V_DOT_L
 HORIZON = sp.Rational(1, 10**14)
 """Cosines below this one count as this one where a reflectance divides by them: no float overflows, nor a gradient."""
 
+SHORT = 1e-15
+"""A vector no longer than this, left over where two unit ones cancel, is their rounding and has no direction."""
+
 UNIT = 1e-3
 """How far from 1 the length of a direction may be in strict mode."""
 
@@ -62,13 +65,13 @@ def cosines(view: Any, light: Any) -> tuple[Any, ...]:
     """t, u, v, v' and w of pairs of unit directions, of the shape that both broadcast to without the last axis.
 
     None is above 1, whatever the rounding. At N = H, where H has no azimuth, w is 1; at V' = -V, where there is no H,
-    t is 0.
+    t is 0; both within `SHORT`, so that gradients stay finite in float32 too.
     """
     _, numpy = library(view, light)
     half = view + light
     x, y, z = (half[..., axis] for axis in range(3))
-    length = _where_positive(numpy, x * x + y * y + z * z, numpy.sqrt, 0)
-    t = _where_positive(numpy, length, lambda known: numpy.maximum(z / known, 0), 0)
+    length = _where_above(numpy, SHORT**2, x * x + y * y + z * z, numpy.sqrt, 0)
+    t = _where_above(numpy, SHORT, length, lambda known: numpy.maximum(z / known, 0), 0)
     w = _azimuth_cosine(numpy, abs(x), abs(y))
     v, v_prime = numpy.broadcast_arrays(view[..., 2], light[..., 2])
     return tuple(_at_most_one(numpy, cosine) for cosine in (t, length / 2, v, v_prime, w))
@@ -77,13 +80,13 @@ def cosines(view: Any, light: Any) -> tuple[Any, ...]:
 def _azimuth_cosine(numpy: Any, x: Any, y: Any) -> Any:
     """x/sqrt(x^2 + y^2) of coordinates that are not negative, by powers of the greater one: no square underflows."""
 
-    def cosine(greater: Any) -> Any:
-        along, across = x / greater, y / greater
-        square = numpy.where(greatest > 0, along * along + across * across, 1)  # 1 or more
+    def cosine(known: Any) -> Any:
+        along, across = x / known, y / known
+        square = numpy.where(greater > SHORT, along * along + across * across, 1)  # 1 or more
         return along / numpy.sqrt(square)
 
-    greatest = numpy.maximum(x, y)
-    return _where_positive(numpy, greatest, cosine, 1)
+    greater = numpy.maximum(x, y)
+    return _where_above(numpy, SHORT, greater, cosine, 1)
 
 
 def _at_most_one(numpy: Any, cosine: Any) -> Any:
@@ -91,10 +94,10 @@ def _at_most_one(numpy: Any, cosine: Any) -> Any:
     return numpy.where(cosine > 1, 1, cosine).astype(cosine.dtype)
 
 
-def _where_positive(numpy: Any, values: Any, function: Any, otherwise: float) -> Any:
-    """A function of the positive ones among some values; its gradient never sees the others."""
-    positive = values > 0
-    return numpy.where(positive, function(numpy.where(positive, values, 1)), otherwise).astype(values.dtype)
+def _where_above(numpy: Any, least: float, values: Any, function: Any, otherwise: float) -> Any:
+    """A function of those of some values that are above a least one; its gradient never sees the others."""
+    above = values > least
+    return numpy.where(above, function(numpy.where(above, values, 1)), otherwise).astype(values.dtype)
 
 
 def check_directions(array: Any, what: str) -> None:

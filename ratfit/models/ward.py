@@ -82,7 +82,11 @@ WARD_ISOTROPIC_AS_PRINTED = Model(
 WARD_THIRD_FORM_AS_PRINTED = Model(
     "ward-third-form-as-printed",
     "Ward's model in a form that has lost the minus sign of its exponent",
-    _scanline.SPECULAR * lobe(distribution.ward_third_form_as_printed(T, W, M, N)),
+    # It is infinite where the exponential overflows, which times a colour of 0 is no number.
+    sp.Piecewise(
+        (0, _scanline.SPECULAR <= 0),
+        (_scanline.SPECULAR * lobe(distribution.ward_third_form_as_printed(T, W, M, N)), True),
+    ),
     (_scanline.SPECULAR, M, N),
     "polimi2024, Ward, third form",
     {"specular": 1.0, "m": 0.15, "n": 0.4},

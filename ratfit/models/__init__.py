@@ -6,11 +6,14 @@ from types import MappingProxyType
 from ratfit._parse import RatfitError, nearest
 from ratfit.models._model import Model as Model
 from ratfit.models.blinn import BLINN, BLINN_AS_PRINTED
+from ratfit.models.conserving import CONSERVING
 from ratfit.models.cook_torrance import COOK_TORRANCE
 from ratfit.models.directions import LETTERS as LETTERS
+from ratfit.models.he import HE
 from ratfit.models.lambert import LAMBERT
 from ratfit.models.oren_nayar import OREN_NAYAR, OREN_NAYAR_AS_PRINTED, OREN_NAYAR_TABLED
 from ratfit.models.phong import PHONG, PHONG_AS_PRINTED
+from ratfit.models.schlick import SCHLICK
 from ratfit.models.smoothie import (
     SMOOTHIE,
     SMOOTHIE_APPROXIMATE,
@@ -40,7 +43,8 @@ MODELS: Mapping[str, Model] = MappingProxyType(
             WARD_AS_PRINTED, WARD_ISOTROPIC_AS_PRINTED, WARD_THIRD_FORM_AS_PRINTED,
             SMOOTHIE, SMOOTHIE_APPROXIMATE,
             SMOOTHIE_AS_PRINTED, SMOOTHIE_CODE_AS_PRINTED, SMOOTHIE_APPROXIMATE_AS_PRINTED,
-            *COOK_TORRANCE,
+            *COOK_TORRANCE, *HE,
+            *SCHLICK, *CONSERVING,
             TOON, TOON_BLINN, TOON_TABLE, TOON_TABLE_BLINN,
         )
     }

@@ -46,9 +46,9 @@ class Factor:
         return self.make()
 
 
-def held(cosine: sp.Expr) -> sp.Expr:
+def held(cosine: sp.Expr, least: sp.Expr = HORIZON) -> sp.Expr:
     """A cosine above the horizon, to divide by."""
-    return sp.Piecewise((HORIZON, cosine < HORIZON), (cosine, True))
+    return sp.Piecewise((least, cosine < least), (cosine, True))
 
 
 def _both(g: Callable[[], sp.Expr]) -> Callable[[], sp.Expr]:

@@ -143,9 +143,9 @@ def cosine_density(v_prime: Expr) -> Expr:
 def microfacet_weight(t: Expr, u: Expr, v: Expr, v_prime: Expr, fresnel: Expr, masking: Expr) -> Expr:
     """F G u/(v t), the reflectance D F G/(4 v v') times N.L over `light_density`: D has cancelled.
 
-    0 where V, L or H is at the horizon or below it. Source: walter2007 Eq. 41.
+    0 where V, L or H is at the horizon or below it, and where V and H are not on one side. Source: walter2007 Eq. 41.
     """
-    hidden = (v <= 0) | (v_prime <= 0) | (t <= 0)
+    hidden = (v <= 0) | (v_prime <= 0) | (t <= 0) | (u <= 0)
     return Piecewise((S.Zero, hidden), (fresnel * masking * u / (instead(v, 1, v <= 0) * instead(t, 1, t <= 0)), True))
 
 

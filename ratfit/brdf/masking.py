@@ -15,9 +15,10 @@ from collections.abc import Callable
 
 from sympy import Expr, Integer, Max, Min, Or, Piecewise, Rational, erf, erfc, exp, oo, pi, sqrt
 
+from ratfit.brdf._instead import instead
+
 _FAR = Integer(30)
 """a is held below this: from here on 1 - G and erfc(a) are less than exp(-900), which no double tells from 0."""
-_HARMLESS = Rational(1, 2)
 
 
 def torrance_sparrow(t: Expr, u: Expr, v: Expr, v_prime: Expr) -> Expr:
@@ -48,7 +49,7 @@ def smith(v: Expr, m: Expr) -> Expr:
     Source: smith1967; schlick1994 Eq. 18 is meant to be this and is not, see `smith_as_printed`.
     """
     a = _slope_ratio(v, m * _sine(v, 2))
-    return _above(v, a * (1 + erf(a)) / (2 * (a + _hidden(a))))
+    return _above(v, (1 + erf(a)) / (2 * (1 + _gaussian_lambda(a))))
 
 
 def smith_as_printed(v: Expr, m: Expr) -> Expr:
@@ -73,7 +74,7 @@ def beckmann_lambda(v: Expr, alpha: Expr) -> Expr:
     Source: heitz2014 Eq. 66, smith1967.
     """
     a = _slope_ratio(v, alpha * _sine(v))
-    return Piecewise((oo, v <= 0), (_hidden(a) / a, True))
+    return Piecewise((oo, v <= 0), (_gaussian_lambda(a), True))
 
 
 def beckmann(v: Expr, alpha: Expr) -> Expr:
@@ -86,7 +87,7 @@ def beckmann(v: Expr, alpha: Expr) -> Expr:
     Source: walter2007 Eq. 26, heitz2014 Eq. 66.
     """
     a = _slope_ratio(v, alpha * _sine(v))
-    return _above(v, a / (a + _hidden(a)))
+    return _above(v, 1 / (1 + _gaussian_lambda(a)))
 
 
 def beckmann_correlated(v: Expr, v_prime: Expr, alpha: Expr) -> Expr:
@@ -96,7 +97,7 @@ def beckmann_correlated(v: Expr, v_prime: Expr, alpha: Expr) -> Expr:
     Source: heitz2014 Eqs. 66 and 99.
     """
     a, b = (_slope_ratio(cosine, alpha * _sine(cosine)) for cosine in (v, v_prime))
-    return _both_above(v, v_prime, 1 / (1 + _hidden(a) / a + _hidden(b) / b))
+    return _both_above(v, v_prime, 1 / (1 + _gaussian_lambda(a) + _gaussian_lambda(b)))
 
 
 def beckmann_rational(v: Expr, alpha: Expr) -> Expr:
@@ -256,12 +257,12 @@ def _both_above(v: Expr, v_prime: Expr, value: Expr) -> Expr:
 
 def _positive(cosine: Expr) -> Expr:
     """The cosine, or a harmless one under the horizon."""
-    return Piecewise((_HARMLESS, cosine <= 0), (cosine, True))
+    return instead(cosine, 1, cosine <= 0)
 
 
 def _held(v: Expr) -> Expr:
     """A cosine in (0, 1]: what rounding has put above 1 is 1, with the function's own slope at 1."""
-    return Piecewise((_HARMLESS, v <= 0), (1, v > 1), (v, True))
+    return instead(v, 1, Or(v <= 0, v > 1))
 
 
 def _sine(v: Expr, scale: int = 1) -> Expr:
@@ -269,32 +270,29 @@ def _sine(v: Expr, scale: int = 1) -> Expr:
 
     The scale is put inside the root, where 2 is exact: sqrt(2) is not.
     """
-    oblique = Piecewise((_HARMLESS, Or(v <= 0, v >= 1)), (v, True))
+    oblique = Piecewise((Rational(1, 2), Or(v <= 0, v >= 1)), (v, True))
     return Piecewise((0, v >= 1), (sqrt((scale - scale * oblique) * (1 + oblique)), True))
 
 
 def _slope_ratio(v: Expr, spread: Expr) -> Expr:
-    """a = v/spread with spread = alpha sin(theta): cot(theta) over alpha, at most 30.
-
-    A minimum, not a quotient or a case: sympy writes the square of those as squares of their parts, which underflow.
-    """
-    cosine = _positive(v)
-    return Min(_FAR, cosine / Max(spread, cosine / (2 * _FAR)))
+    """a = v/spread with spread = alpha sin(theta): cot(theta) over alpha, at most 30."""
+    return 1 / Max(spread / _positive(v), 1 / _FAR)
 
 
-def _hidden(a: Expr) -> Expr:
-    """a Lambda(a) of a Gaussian surface, half the integral of erfc from a on: no division by an a that may be 0."""
-    return exp(-(a**2)) / (2 * sqrt(pi)) - a * erfc(a) / 2
+def _gaussian_lambda(a: Expr) -> Expr:
+    """Never below 0, by rounding either: so no G is above 1."""
+    return Max(0, exp(-(a**2)) / (2 * sqrt(pi) * a) - erfc(a) / 2)
 
 
 def _ggx_parts(v: Expr, alpha: Expr) -> tuple[Expr, Expr, Expr]:
     """v, alpha**2 (1 - v**2) and sqrt(v**2 + alpha**2 (1 - v**2)), by powers of the greater one of v and alpha.
 
-    So no square underflows that matters: without it GGX at alpha = 0 would be 2 instead of 1 for very small v.
+    So no square underflows that matters: without it GGX at alpha = 0 would be 2 instead of 1 for very small v. The
+    minima with 1 change nothing: sympy would write the square of a quotient as a quotient of squares.
     """
-    held = _held(v)
-    p = Min(1, held / Max(alpha, held / 2))
-    q = Min(1, alpha / Max(held, alpha / 2))
+    held, smooth = _held(v), Or(v <= 0, alpha <= v)
+    p = Min(1, Piecewise((1, smooth), (held / instead(alpha, 1, smooth), True)))
+    q = Min(1, Piecewise((alpha / held, smooth), (1, True)))
     excess = q**2 * (1 - held) * (1 + held)
     return p, excess, sqrt(p**2 + excess)
 

@@ -10,7 +10,7 @@ from typing import ClassVar
 import sympy as sp
 
 from ratfit._parse import RatfitError, check_name
-from ratfit._target import exact
+from ratfit._target import Parameter, exact
 
 MAX_DEGREE = 60
 """Largest degree of numerator or denominator: exact null spaces beyond it take minutes."""
@@ -188,11 +188,11 @@ class Form(AbstractForm):
 class Power(AbstractForm):
     """A + B*base**exponent with a free real exponent; the base must be a polynomial of degree 1 in the variable.
 
-    `exponent` is the name of the exponent; A and B are found from the conditions.
+    `exponent` is the name of the exponent, or a symbol of that name; A and B are found from the conditions.
     """
 
     base: sp.Expr
-    exponent: str = "n"
+    exponent: str | sp.Symbol = "n"
     letters: ClassVar[tuple[str, str]] = ("A", "B")
 
     @property
@@ -205,7 +205,7 @@ class Power(AbstractForm):
 
     def check(self) -> None:
         object.__setattr__(self, "base", exact(self.base, "form, power"))
-        check_name(self.exponent, "form, exponent")
+        object.__setattr__(self, "exponent", _name_of(self.exponent))
 
     def shape(self, variable: sp.Symbol, taken: Iterable[str]) -> Shape:
         base = self.base.subs(variable, self.inner(variable))
@@ -217,6 +217,15 @@ class Power(AbstractForm):
         a, b = (sp.Symbol(name, real=True) for name in names)
         n = sp.Symbol(self.exponent, real=True)
         return Shape(a + b * base**n, sp.S.One, self.factor, (a, b, n), homogeneous=False, power=(base, n))
+
+
+def _name_of(exponent: str | sp.Symbol) -> str:
+    if isinstance(exponent, Parameter) or not isinstance(exponent, str | sp.Symbol):
+        raise RatfitError(
+            f"form, exponent {exponent!r}: it is open here and finds its own range, so give a name such as 'n'; "
+            "an exponent that is known stands in Form(A + B*base**exponent, (A, B))"
+        )
+    return check_name(str(exponent), "form, exponent")
 
 
 def letters_of(letter: str, taken: Iterable[str]) -> str:

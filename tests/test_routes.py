@@ -353,6 +353,35 @@ def test_family_of_powers_above_three():
     assert [(s.name, r) for s, r in fit.free.items()] == [("n", (3, sp.oo))]
 
 
+# base, what is chosen: A + B*base**n has a denominator in eta from the target, and one in the base's own scale.
+CHOSEN_POWERS = [("1 - x", "4"), ("1 - x", "9/2"), ("1 - x", "5"), ("3 - 3*x", "4"), ("1/2 - x/2", "5/2")]
+
+
+@pytest.mark.parametrize(("base", "n"), CHOSEN_POWERS)
+def test_a_member_of_a_family_of_powers_is_checked_with_its_denominator(base, n):
+    x, eta = sp.Symbol("x", nonnegative=True), rf.parameter("eta", "1.3", 3)
+    c = sp.sqrt(eta**2 - 1 + x**2)
+    fresnel = (((x - c) / (x + c)) ** 2 + ((eta**2 * x - c) / (eta**2 * x + c)) ** 2) / 2
+    problem = rf.Problem(
+        target=rf.Target(fresnel, x, (0, 1)),
+        conditions=[rf.Value(0), rf.Value(1), rf.Derivative(1)],
+        form=rf.Power(sp.sympify(base, locals={"x": x}), "n"),
+    )
+    fit = rf.derive(problem.with_choice({"n": n}), timeout=TIMEOUT)
+    head_on = ((eta - 1) / (eta + 1)) ** 2
+    assert sp.simplify(fit.chosen - head_on - (1 - head_on) * (1 - x) ** sp.Rational(n)) == 0
+
+
+def test_an_exponent_may_be_a_symbol():
+    assert rf.Power(1 - sp.Symbol("x"), sp.Symbol("k")) == rf.Power(1 - sp.Symbol("x"), "k")
+
+
+@pytest.mark.parametrize("exponent", [5, 2.5, sp.Integer(5), 2 * sp.Symbol("n"), None, rf.parameter("n", 1, 3)])
+def test_an_exponent_that_is_not_open_is_told_where_it_belongs(exponent):
+    with pytest.raises(RatfitError, match=r"stands in Form\("):
+        rf.Power(1 - sp.Symbol("x"), exponent)
+
+
 # name -> (arguments, status, words that the reasons must hold)
 HONEST_NOES = {
     "contradiction": (("x", "0 1", "1/1", {"value": ["0;equals=1", "0;equals=2"]}), "rejected", "value at 0"),

@@ -40,7 +40,7 @@ def found_exactly(system: System, condition: AbstractCondition, candidate: Reduc
 def _derivative(system: System, condition: AbstractPointCondition, candidate: Reduced) -> sp.Expr:
     x = system.problem.variable
     if system.shape.power is not None:
-        return _power_derivative(candidate.numerator, system.shape.power[0], x, condition)
+        return _power_derivative(candidate.expression, system.shape.power[0], x, condition)
     if not (candidate.numerator.is_polynomial(x) and candidate.denominator.is_polynomial(x)):
         value = sp.diff(candidate.expression, x, condition.order).subs(x, condition.at)
         if not value.has(sp.nan, sp.zoo, sp.oo):

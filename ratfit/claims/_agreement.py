@@ -17,6 +17,9 @@ NEAR = sp.Float("1e-30")
 NUMBER = 1e-9
 """The same for numbers that come out of quadrature in float64."""
 
+NOTHING = 1e-11
+"""What is smaller is the rounding of a computation whose result is 0, and shown as 0."""
+
 SHARES = tuple(sp.Rational(share, 37) for share in (2, 7, 13, 19, 23, 29, 34))
 """Where in the range of a symbol formulas are compared."""
 
@@ -127,7 +130,9 @@ def shown(value: Any) -> Any:
         case sp.Basic():
             return int(value) if value.is_Integer else str(unguarded(value))
     number = float(value)
-    return float(f"{number:.6g}") if number - number == 0 else None
+    if number - number != 0:
+        return None
+    return 0.0 if abs(number) < NOTHING else float(f"{number:.6g}")
 
 
 def unguarded(formula: sp.Expr) -> sp.Expr:

@@ -6,19 +6,27 @@ from collections.abc import Iterator, Sequence
 
 from ratfit._parse import RatfitError, nearest
 from ratfit.claims import (
-    fresnel,
-    method,
+    background,
     distributions,
+    fresnel,
     masking,
+    method,
+    published_errors,
+    sampling,
+    schlick_model,
     smoothie_fresnel,
 )
 from ratfit.claims._claim import DOCUMENTS, Claim
 
 _THEMES = (
+    background,
     method,
     fresnel,
-    distributions,
     masking,
+    distributions,
+    published_errors,
+    schlick_model,
+    sampling,
     smoothie_fresnel,
 )
 

@@ -1,0 +1,64 @@
+"""Importance sampling: Eq. 29 of schlick1994."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import sympy as sp
+
+from ratfit.brdf import sampling
+from ratfit.claims._claim import Claim, Reading
+from ratfit.claims._numbers import integral
+from ratfit.claims.schlick_model import R, Z
+from ratfit.models.directions import T
+
+Sample = Callable[[sp.Expr, sp.Expr], sp.Expr]
+
+UNIFORM = tuple(sp.Rational(k, 16) for k in range(1, 16))
+
+
+def off_uniform(sample: Sample, distribution: Sample, p: sp.Expr) -> float:
+    """How far a distribution function of its own samples is from the uniform numbers they are made of: 0 if right."""
+    return max(abs(float(sp.N(distribution(sample(b, p), p) - b, 20))) for b in UNIFORM)
+
+
+def off_zenith(r: float) -> float:
+    """The same for the cosine of the zenith angle: the share of Z below it is the number a."""
+    worst = 0.0
+    for a in UNIFORM:
+        cosine = float(sampling.ggx_cosine(a, sp.sqrt(sp.Float(r, 17))))
+        worst = max(worst, abs(integral(2 * T * Z, T, 0.0, cosine, {R: r}) - float(a)))
+    return worst
+
+
+FIFTH = sp.Rational(1, 5)
+
+CLAIMS = (
+    Claim(
+        "S-29-zenith",
+        "Eq. 29",
+        "alpha = arccos sqrt(a/(r - a r + a)) is distributed as Z",
+        0,
+        lambda: max(off_zenith(r) for r in (0.01, 0.2, 1.0)),
+        how="greatest distance of the share of Z below a sample from its a, at three r",
+    ),
+    Claim(
+        "S-29-azimuth",
+        "Eq. 29",
+        "phi = (pi/2) sqrt(p^2 b^2/(1 - b^2 + b^2 p^2)) is distributed as A",
+        0,
+        lambda: off_uniform(sampling.azimuth_as_printed, sampling.azimuth_distribution_as_printed, FIFTH),
+        how="at p = 1/5",
+        readings=(
+            Reading(
+                "as A without the root",
+                lambda: off_uniform(sampling.azimuth_as_printed, sampling.azimuth_distribution, FIFTH),
+            ),
+        ),
+        instead=Reading(
+            "it has its peak along the scratches, where A is least; phi = arctan(tan(pi b/2)/p) is distributed as A "
+            "without the root. The found number is how far the share of A below a sample is from its b, at p = 1/5",
+            lambda: off_uniform(sampling.azimuth, sampling.azimuth_distribution, FIFTH) < 1e-12,
+        ),
+    ),
+)

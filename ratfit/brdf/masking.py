@@ -14,6 +14,7 @@ surface see there. No exponential magnifies an error here: where it is small it 
 from collections.abc import Callable
 
 from sympy import Expr, Integer, Max, Min, Or, Piecewise, Rational, erf, erfc, exp, oo, pi, sqrt
+from sympy.logic.boolalg import Boolean
 
 from ratfit.brdf._instead import instead
 
@@ -49,7 +50,8 @@ def smith(v: Expr, m: Expr) -> Expr:
     Source: smith1967; schlick1994 Eq. 18 is meant to be this and is not, see `smith_as_printed`.
     """
     a = _slope_ratio(v, m * _sine(v, 2))
-    return _above(v, (1 + erf(a)) / (2 * (1 + _gaussian_lambda(a))))
+    seen = (1 + erf(a)) / (2 * (1 + _gaussian_lambda(a)))
+    return Piecewise((0, v <= 0), (1, _flat(v, m)), (seen, True))
 
 
 def smith_as_printed(v: Expr, m: Expr) -> Expr:
@@ -74,7 +76,7 @@ def beckmann_lambda(v: Expr, alpha: Expr) -> Expr:
     Source: heitz2014 Eq. 66, smith1967.
     """
     a = _slope_ratio(v, alpha * _sine(v))
-    return Piecewise((oo, v <= 0), (_gaussian_lambda(a), True))
+    return Piecewise((oo, v <= 0), (0, _flat(v, alpha)), (_gaussian_lambda(a), True))
 
 
 def beckmann(v: Expr, alpha: Expr) -> Expr:
@@ -87,7 +89,7 @@ def beckmann(v: Expr, alpha: Expr) -> Expr:
     Source: walter2007 Eq. 26, heitz2014 Eq. 66.
     """
     a = _slope_ratio(v, alpha * _sine(v))
-    return _above(v, 1 / (1 + _gaussian_lambda(a)))
+    return Piecewise((0, v <= 0), (1, _flat(v, alpha)), (1 / (1 + _gaussian_lambda(a)), True))
 
 
 def beckmann_correlated(v: Expr, v_prime: Expr, alpha: Expr) -> Expr:
@@ -253,6 +255,11 @@ def _above(v: Expr, value: Expr) -> Expr:
 
 def _both_above(v: Expr, v_prime: Expr, value: Expr) -> Expr:
     return Piecewise((0, Or(v <= 0, v_prime <= 0)), (value, True))
+
+
+def _flat(v: Expr, roughness: Expr) -> Boolean:
+    """Where nothing hides: for sympy exactly, for arrays already where a is held."""
+    return Or(v >= 1, roughness <= 0)
 
 
 def _positive(cosine: Expr) -> Expr:

@@ -88,20 +88,20 @@ def samples(name, count, dtype):
 @pytest.mark.parametrize(("dtype", "digits"), [(np.float64, 52), (np.float32, 23)])
 @pytest.mark.parametrize("name", PRINTED)
 def test_values_are_those_of_the_printed_formula(name, dtype, digits):
-    """To 4 units in float64's 52nd binary digit, 8 with two roughnesses, more as a Gaussian's exponent magnifies."""
+    """To 4 units of 2**-52 in float64, 8 with two roughnesses, and 3 for every unit of an exponent, which magnifies."""
     points = samples(name, 250, dtype)
     values = lowered(name)(*points)
     assert values.dtype == dtype
-    allowed = 8 if "anisotropic" in name else 4
+    allowed = 8 if name in FOUR else 4
     with mpmath.workdps(50):
         for *place, value in zip(*points, values, strict=True):
             exact = [mpf(float(part)) for part in place]
             exponent = EXPONENT.get(name, lambda *_: 0)(*exact)
             if exponent < (600 if digits == 52 else 60):
                 expected = PRINTED[name](*exact)
-                if float(np.finfo(dtype).tiny) < expected < float(np.finfo(dtype).max):
+                if float(np.finfo(dtype).tiny) * 1e7 < expected < float(np.finfo(dtype).max):
                     unit = mpf(2) ** -digits * expected
-                    assert abs(mpf(float(value)) - expected) <= (allowed + 2 * exponent) * unit, place
+                    assert abs(mpf(float(value)) - expected) <= (allowed + 3 * exponent) * unit, place
 
 
 NORMALISED = [(name, rough) for name in ("beckmann", "ggx", "smoothie") for rough in (0.05, 0.3, 1, 2)]

@@ -6,8 +6,8 @@ limit from above, and t above 1 by rounding counts as 1. Values are per steradia
 hemisphere is 1. The D of schlick1994 is pi times that (its Eq. 5); its factors Z and A are kept as it has them.
 
 A roughness below `SMOOTH` counts as 0, a Dirac: infinite in its direction, 0 in all others; nothing is nan. A Gaussian
-whose exponent is beyond `UNDERFLOW` is 0. On arrays in float64 the values are right to 4 units of 2^-52, those of
-`ggx_anisotropic` to 8, and two more for every unit of a Gaussian's exponent, tan^2/alpha^2, or of `blinn`'s logarithm.
+whose exponent is beyond `UNDERFLOW` is 0. On arrays in float64 the values are right to 4 units of 2^-52, those with two
+roughnesses to 8, and to 3 more for every unit of a Gaussian's exponent, tan^2/alpha^2, or of `blinn`'s logarithm.
 Gradients are finite where there is no Dirac (in float32 for roughness from 1e-6 on). What roughness means in each:
 `ratfit.brdf.roughness`. For calculus take the `ratfit.brdf.interior` of a formula.
 """

@@ -25,7 +25,7 @@ from ratfit.brdf import distribution
 from ratfit.models._model import Model
 from ratfit.models.cook_torrance import held
 from ratfit.models.directions import V_PRIME, T, U, V, W
-from ratfit.models.schlick import DEFAULTS, SPECTRAL, Layer, layer, mirror, spread, visible, weights
+from ratfit.models.schlick import DEFAULTS, SPECTRAL, Layer, layer, mirror, visible, weighted, weights
 
 ENDS = sp.Rational(1, 10)
 """hidden = r/(r + ENDS) times `hidden_shape`."""
@@ -85,8 +85,7 @@ def masked(r: sp.Expr, p: sp.Expr) -> sp.Expr:
 
 def facets(layer: Layer) -> sp.Expr:
     """b times G G' Z A/(4 pi v v'), of albedo 1 at most."""
-    lobe = spread(T, layer.r) ** 2 * distribution.azimuth(W, layer.p)
-    return (1 - layer.r) / sp.pi * lobe * masked(layer.r, layer.p)
+    return weighted(T, layer.r) * distribution.azimuth(W, layer.p) * masked(layer.r, layer.p) / sp.pi
 
 
 def reemitted(layer: Layer) -> sp.Expr:

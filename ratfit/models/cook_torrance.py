@@ -48,7 +48,7 @@ class Factor:
 
 def held(cosine: sp.Expr, least: sp.Expr = HORIZON) -> sp.Expr:
     """A cosine above the horizon, to divide by."""
-    return sp.Piecewise((least, cosine < least), (cosine, True))
+    return sp.Max(cosine, least)
 
 
 def _both(g: Callable[[], sp.Expr]) -> Callable[[], sp.Expr]:

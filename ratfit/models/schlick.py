@@ -29,8 +29,12 @@ SMALLEST = sp.Rational(1, 10_000)
 """The least r of the factors that come to a Dirac at r = 0; with weights, a mirror takes the Dirac's place."""
 
 
-PRINTED_HORIZON = sp.Rational(1, 10**5)
+PRINTED_HORIZON = sp.Rational(1, 10**8)
 """For the cosines that `printed_twice` divides by: so float32 can hold the result."""
+
+
+NEARLY_MIRROR = sp.Rational(1, 10**12)
+"""Z of a smaller r counts as that of this one: its lobe is narrower than float64 can tell directions apart."""
 
 
 @dataclass(frozen=True)
@@ -83,10 +87,14 @@ def visible(v: sp.Expr, r: sp.Expr) -> sp.Expr:
 
 
 def spread(t: sp.Expr, r: sp.Expr) -> sp.Expr:
-    """r/(1 + r t^2 - t^2), whose square is r Z(t) (schlick1994, Eq. 28); 0 for r = 0, at t = 1 too."""
-    one_minus = (1 - t) * (1 + t)
-    where = r * t**2 + one_minus <= 0
-    return r / (r * t**2 + one_minus + sp.Piecewise((1, where), (0, True)))
+    """r/(1 + r t^2 - t^2), whose square over r is Z(t) (schlick1994, Eq. 28), for r > 0."""
+    return r / (r * t**2 + (1 - t) * (1 + t))
+
+
+def weighted(t: sp.Expr, r: sp.Expr) -> sp.Expr:
+    """b Z(t)/4 with the b of Eq. 33: finite for every r, and 0 for r = 0, where the mirror takes the Dirac's place."""
+    least = sp.Max(r, NEARLY_MIRROR)
+    return (1 - r) * r / least * spread(t, least) ** 2
 
 
 def obstructed(r: sp.Expr) -> sp.Expr:
@@ -120,19 +128,16 @@ def reemitted(layer: Layer, azimuth: sp.Expr) -> sp.Expr:
 
 
 def continuum(layer: Layer, azimuth: sp.Expr) -> sp.Expr:
-    """a/pi + b times `reemitted` (schlick1994, Eq. 32, with B = G G' Z A + 1 - G G').
-
-    b Z = 4 (1 - r) (r Z), which is finite for every r.
-    """
-    a, _, _ = weights(layer.r)
-    whole = spread(T, layer.r) ** 2 * azimuth + layer.r**2 * obstructed(layer.r)
-    return a / sp.pi + (1 - layer.r) / sp.pi * masked(layer.r) * whole
+    """a/pi + b times `reemitted` (schlick1994, Eq. 32, with B = G G' Z A + 1 - G G')."""
+    a, b, _ = weights(layer.r)
+    whole = weighted(T, layer.r) * azimuth + b * layer.r / 4 * obstructed(layer.r)
+    return a / sp.pi + masked(layer.r) / sp.pi * whole
 
 
 def continuum_of_facets(layer: Layer, azimuth: sp.Expr) -> sp.Expr:
     """a/pi + b times `facets` (schlick1994, Eq. 32, with B = Z A)."""
     a, _, _ = weights(layer.r)
-    return a / sp.pi + (1 - layer.r) / sp.pi * spread(T, layer.r) ** 2 * azimuth / (held(V) * held(V_PRIME))
+    return a / sp.pi + weighted(T, layer.r) * azimuth / (sp.pi * held(V) * held(V_PRIME))
 
 
 def printed_twice(formula: Callable[[Layer, sp.Expr], sp.Expr]) -> Callable[[Layer, sp.Expr], sp.Expr]:
@@ -140,8 +145,8 @@ def printed_twice(formula: Callable[[Layer, sp.Expr], sp.Expr]) -> Callable[[Lay
 
     def to_the_letter(layer: Layer, azimuth: sp.Expr) -> sp.Expr:
         diffuse = weights(layer.r)[0] / sp.pi
-        once_more = 4 * sp.pi * held(V, PRINTED_HORIZON) * held(V_PRIME, PRINTED_HORIZON)
-        return diffuse + (formula(layer, azimuth) - diffuse) / once_more
+        cosines = {held(cosine): held(cosine, PRINTED_HORIZON) for cosine in (V, V_PRIME)}
+        return diffuse + ((formula(layer, azimuth) - diffuse) / (4 * sp.pi * held(V) * held(V_PRIME))).xreplace(cosines)
 
     return to_the_letter
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from ratfit._parse import RatfitError, nearest
 from ratfit.claims import (
     background,
+    course,
     distributions,
     fresnel,
     masking,
@@ -14,6 +15,7 @@ from ratfit.claims import (
     published_errors,
     sampling,
     schlick_model,
+    smoothie,
     smoothie_fresnel,
 )
 from ratfit.claims._claim import DOCUMENTS, Claim
@@ -27,6 +29,8 @@ _THEMES = (
     published_errors,
     schlick_model,
     sampling,
+    course,
+    smoothie,
     smoothie_fresnel,
 )
 

@@ -8,7 +8,7 @@ from ratfit.brdf import distribution, masking
 from ratfit.claims._agreement import AtLeast, AtMost
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo, over_pairs
-from ratfit.models.directions import LETTERS, V_PRIME, T, V, W
+from ratfit.models.directions import V_PRIME, T, V, W
 from ratfit.models.lambert import LAMBERT
 from ratfit.models.ward import WARD_AS_PRINTED
 
@@ -128,7 +128,5 @@ def anisotropy(m: float, n: float) -> float:
     """How many times Ward's D along one axis is that along the other, at 20 degrees."""
     slopes = sp.symbols("m n", positive=True)
     lobe = distribution.ward_as_printed(T, W, *slopes)
-    along, across = (
-        float(lobe.subs({T: sp.cos(sp.pi / 9), W: w, slopes[0]: m, slopes[1]: n}).evalf()) for w in (1, 0)
-    )
+    along, across = (float(lobe.subs({T: sp.cos(sp.pi / 9), W: w, slopes[0]: m, slopes[1]: n}).evalf()) for w in (1, 0))
     return max(along / across, across / along)

@@ -15,7 +15,7 @@ from ratfit.claims._numbers import integral, midpoints, values
 from ratfit.claims.masking import SLOPES
 from ratfit.claims.method import derived
 from ratfit.gallery import card
-from ratfit.models.directions import T, W
+from ratfit.models.directions import V_PRIME, T, V, W
 
 M, ALPHA, N = parameter("m", "1/100", "1/2"), parameter("alpha", "1/10", 1), parameter("n", 0, 100)
 TANGENT = sp.sqrt(1 - T**2) / T
@@ -78,6 +78,11 @@ def weight_of_ggx() -> float:
     """The weight of GGX's operations over those of Blinn's power."""
     costs = [schedule(unguarded(each(T, ALPHA)), T).cost for each in (distribution.ggx, distribution.blinn)]
     return costs[0].weight / costs[1].weight
+
+
+def steeper_share(density: sp.Expr, setting: dict[sp.Symbol, float]) -> float:
+    """The share of facets, by projected area, that are steeper than 20 degrees."""
+    return total(T * density, setting, 0.0, float(sp.cos(sp.pi / 9)))
 
 
 def tail() -> float:
@@ -201,14 +206,32 @@ CLAIMS = (
         how="symbolic",
     ),
     Claim(
+        "DP-model",
+        "Micro-facet BRDF lighting",
+        "D F G/(4 (N.L)(N.V)) is Cook and Torrance's term, s/(4 pi v v') F G D of schlick1994",
+        BECKMANN / (4 * sp.pi * V * V_PRIME),
+        lambda: distribution.beckmann(T, M) / (4 * V * V_PRIME),
+        how="its D being that of schlick1994 over pi",
+    ),
+    Claim(
+        "DP-D-smooth",
+        "D term",
+        "a greater exponent of Phong's D is a smoother surface, a greater alpha a rougher one",
+        (True, True),
+        lambda: (
+            steeper_share(distribution.phong(T, N), {N: 10.0}) > steeper_share(distribution.phong(T, N), {N: 50.0}),
+            steeper_share(distribution.ggx(T, ALPHA), {ALPHA: 0.5})
+            > steeper_share(distribution.ggx(T, ALPHA), {ALPHA: 0.2}),
+        ),
+        how="the share of facets steeper than 20 degrees",
+    ),
+    Claim(
         "DP-D-one",
         "D term",
         "a distribution must integrate to 1: Phong's, Beckmann's and GGX's do",
         (1, 1, 1),
         lambda: totals_at_half(weight=sp.S.One),
-        readings=(
-            Reading("with the cosine N.H as a weight, by projected area", lambda: totals_at_half(weight=T)),
-        ),
+        readings=(Reading("with the cosine N.H as a weight, by projected area", lambda: totals_at_half(weight=T)),),
     ),
     Claim(
         "DP-D-beckmann",
@@ -232,9 +255,7 @@ CLAIMS = (
         "Beckmann is similar to Phong with n = 2/alpha^2 - 2 for smooth surfaces",
         "similar",
         None,
-        readings=(
-            Reading("within 1 percent of the peak at alpha = 0.1", lambda: off_beckmann(0.1), AtMost(0.01)),
-        ),
+        readings=(Reading("within 1 percent of the peak at alpha = 0.1", lambda: off_beckmann(0.1), AtMost(0.01)),),
         open="similar means no number",
     ),
     Claim(

@@ -221,8 +221,8 @@ CLAIMS = (
         None,
         readings=(
             Reading(
-                "the shapes (F - f)/(1 - f) of diamond, glass, copper and gold are apart by less than a quarter of what "
-                "their values f are apart by",
+                "the shapes (F - f)/(1 - f) of diamond, glass, copper and gold are apart by less than a quarter "
+                "of what their values f are apart by",
                 lambda: spread_of_shapes(of_figure_5()) / spread_of_levels(of_figure_5()),
                 AtMost(0.25),
             ),

@@ -149,8 +149,8 @@ CLAIMS = (
         lambda: turned_by(TORRANCE, both=True),
         readings=(
             Reading(
-                "the view alone is turned: Eq. 16 depends on the difference of the azimuths, as Eq. 17 does not; turned "
-                "together, view and light leave it as it is",
+                "the view alone is turned: Eq. 16 depends on the difference of the azimuths, as Eq. 17 does not; "
+                "turned together, view and light leave it as it is",
                 lambda: turned_by(TORRANCE, both=False),
             ),
         ),
@@ -186,7 +186,9 @@ CLAIMS = (
         instead=Reading(
             "Smith's function is g/(g + exp(-h)), Eq. 18 has 1 in place of the exponential; the two have one value and "
             "slope at v = 0, and the found number is how far they are apart at most",
-            lambda: abs(slope_at_grazing(masking.smith(V, M)) - slope_at_grazing(masking.smith_as_printed(V, M))) < 1e-6,
+            lambda: (
+                abs(slope_at_grazing(masking.smith(V, M)) - slope_at_grazing(masking.smith_as_printed(V, M))) < 1e-6
+            ),
         ),
     ),
     Claim(
@@ -250,8 +252,11 @@ CLAIMS = (
         instead=Reading(
             "for small m the greatest difference is near v = 0: for m up to 1/4 it lies below v = 0.25, and at v = 0.9 "
             "and above for m = 1/2 it is less than half as great; very similar is taken as within 0.05",
-            lambda: all(worst_place(m) < 0.25 for m in SLOPES[:-1])
-            and 2 * apart(masking.schlick(V, M), masking.smith_as_printed(V, M), M, SLOPES[-1:]) < worst_away_from_normal(),
+            lambda: (
+                all(worst_place(m) < 0.25 for m in SLOPES[:-1])
+                and 2 * apart(masking.schlick(V, M), masking.smith_as_printed(V, M), M, SLOPES[-1:])
+                < worst_away_from_normal()
+            ),
         ),
     ),
     Claim(

@@ -69,7 +69,7 @@ def are_unique(*names: str) -> bool:
 
 
 def pade_is_better(functions: tuple[sp.Expr, ...] = TAYLOR_AND_PADE) -> float:
-    """The share of functions whose Pade approximant [2/2] is nearer on [0, 1] than the Taylor polynomial of degree 4."""
+    """The share of functions to which, on [0, 1], Pade [2/2] is nearer than the Taylor polynomial of degree 4."""
     better = [_worst(f, _pade(f)) < _worst(f, sp.series(f, X, 0, 5).removeO()) for f in functions]
     return sum(better) / len(better)
 

@@ -36,9 +36,7 @@ def of_sine(definition: Definition) -> float:
 
 def of_fresnel(definition: Definition) -> float:
     u = midpoints()
-    return _mean(
-        [definition(values(fresnel.schlick(U, F), {U: u, F: normal(m)}), curve(m, u)) for m in of_figure_5()]
-    )
+    return _mean([definition(values(fresnel.schlick(U, F), {U: u, F: normal(m)}), curve(m, u)) for m in of_figure_5()])
 
 
 def of_smith(definition: Definition) -> float:
@@ -241,7 +239,9 @@ CLAIMS = (
         open=NO_MACHINE,
         measured=(Reading("timed here with NumPy, over pairs of directions", timed_models),),
     ),
-    _error("S-fn3", "footnote 3", "Eq. 16 in place of Smith's function has an error of 53 %", Rounded(0.53, 0.01), of_eq_16),
+    _error(
+        "S-fn3", "footnote 3", "Eq. 16 in place of Smith's function has an error of 53 %", Rounded(0.53, 0.01), of_eq_16
+    ),
     Claim(
         "S-3-errors",
         "Section 3",

@@ -75,9 +75,7 @@ def azimuth_at(angle: Any) -> Any:
 
 def slopes_ratio(factor: sp.Expr, p: float) -> float:
     """The RMS slope along the scratch over that across, of Z A: the factor's mean cos^2 and sin^2."""
-    along, across = (
-        mean_azimuth(factor * weight, p) for weight in (W**2, 1 - W**2)
-    )
+    along, across = (mean_azimuth(factor * weight, p) for weight in (W**2, 1 - W**2))
     return (along / across) ** 0.5
 
 
@@ -169,8 +167,10 @@ CLAIMS = (
         True,
         lambda: same(roughness.r_by_zenith(M), roughness.r_by_masking(M)),
         instead=Reading(
-            "two laws: r = 2 m^2 by Z and r = sqrt(2/pi) m by G, m along one axis; they agree at m = 1/sqrt(2 pi) alone",
-            lambda: bool(sp.solve(roughness.r_by_zenith(M) - roughness.r_by_masking(M), M)[-1] == 1 / sp.sqrt(2 * sp.pi)),
+            "two laws: r = 2 m^2 by Z and r = sqrt(2/pi) m by G, m along one axis; they agree at m = 1/sqrt(2 pi)",
+            lambda: bool(
+                sp.solve(roughness.r_by_zenith(M) - roughness.r_by_masking(M), M)[-1] == 1 / sp.sqrt(2 * sp.pi)
+            ),
         ),
     ),
     Claim(
@@ -221,7 +221,7 @@ CLAIMS = (
         lambda: mean_azimuth(A_PRINTED, 0.2),
         how="at p = 1/5",
         instead=Reading(
-            "its square p/(p^2 - p^2 w^2 + w^2) keeps it for every p; the found mean is that of A as printed at p = 1/5",
+            "its square p/(p^2 - p^2 w^2 + w^2) keeps it for every p; the found mean is that of the printed A at p = 1/5",
             lambda: all(abs(mean_azimuth(A, p) - 1) < 1e-9 for p in (0.01, 0.05, 0.2, 0.5, 1.0)),
         ),
     ),
@@ -277,9 +277,7 @@ CLAIMS = (
         lambda: share_within(A_PRINTED, 1e-6, 2.0),
         how="its integral within two degrees at p = 1e-6",
         readings=(
-            Reading(
-                "of A without the root; as printed its total goes to 0 with p", lambda: share_within(A, 1e-6, 2.0)
-            ),
+            Reading("of A without the root; as printed its total goes to 0 with p", lambda: share_within(A, 1e-6, 2.0)),
         ),
     ),
     Claim(
@@ -297,8 +295,8 @@ CLAIMS = (
         AtMost(1.0),
         lambda: greatest(EQ_25),
         instead=Reading(
-            "at normal incidence it does; towards the horizon what it reflects grows beyond all bounds (the found number "
-            "is at v = 0.02)",
+            "at normal incidence it does; towards the horizon what it reflects grows beyond all bounds (the found "
+            "number is at v = 0.02)",
             lambda: all(albedo(EQ_25, 1.0, r=r, p=1.0) <= 1 for r in (0.2, 0.5, 1.0)),
         ),
     ),
@@ -309,8 +307,8 @@ CLAIMS = (
         AtMost(1.0),
         lambda: greatest(EQ_30),
         instead=Reading(
-            "the re-emitted share (1 - G G')/(4 pi v v') grows like 1/(2 v) towards the horizon: the found number is at "
-            "v = 0.02",
+            "the re-emitted share (1 - G G')/(4 pi v v') grows like 1/(2 v) towards the horizon: the found number is "
+            "at v = 0.02",
             lambda: abs(reemitted(0.01) - 1) < 0.02,
         ),
     ),
@@ -358,9 +356,7 @@ CLAIMS = (
         "Eq. 33",
         "the three behaviours go over into one another: at r = 1/2 both rules give the microfacets alone",
         (0, 1, 0),
-        lambda: tuple(
-            sp.limit(each, R, HALF) for each in (sp.S.Zero, 4 * R * (1 - R), 1 - 4 * R * (1 - R))
-        ),
+        lambda: tuple(sp.limit(each, R, HALF) for each in (sp.S.Zero, 4 * R * (1 - R), 1 - 4 * R * (1 - R))),
         how="the limit of the rule below 1/2; the rule above it gives (0, 1, 0) too",
     ),
     Claim(

@@ -11,7 +11,7 @@ from ratfit.brdf import fresnel
 from ratfit.claims._agreement import AtLeast, AtMost, Near
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._numbers import midpoints, values
-from ratfit.claims.fresnel import COMMON, F, Material, U, normal, shape, spread_of_shapes
+from ratfit.claims.fresnel import COMMON, F, Material, U, shape, spread_of_shapes
 
 MIDDLE: Material = COMMON[1]
 """The index 1.4."""

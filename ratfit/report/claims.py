@@ -74,7 +74,8 @@ def claims_markdown(decisions: Sequence[Decision]) -> str:
     return "\n".join([about, *(_section(document, decisions) for document in DOCUMENTS)]).rstrip("\n")
 
 
-_EQUAL = """Formulas are taken for equal when they agree to 30 digits at seven places of all their symbols; a number agrees when
+_EQUAL = """Formulas are taken for equal when they agree to 30 digits at seven places of all their symbols; a number agrees
+when
 it rounds to what is printed, or to nine digits where a formula or an integer is claimed.
 """
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import sympy as sp
 
-from ratfit._condition import AbstractCondition
+from ratfit._condition import AbstractCondition, describe
 from ratfit._parse import RatfitError, nearest
 from ratfit._problem import Problem
 from ratfit._problem_text import form_table
@@ -20,6 +20,9 @@ Reason = str
 """One sentence that says why something was rejected or not found, in words a person can act on."""
 
 STATUSES = ("unique", "family", "several", "inconsistent", "rejected", "timeout")
+
+MARKS = {True: ("✓", "ok"), False: ("✗", "NO"), None: ("?", "??")}
+"""How a condition is ticked off, and without Unicode."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,19 @@ class Checked:
     demand: sp.Expr
     holds: bool | None
     residual: float | None
+
+    @property
+    def stated(self) -> str:
+        """The condition with the number it asks for, in words: "value at 0 = 1"."""
+        return f"{describe(self.condition)} = {self.demand}"
+
+    def line(self, *, unicode: bool = True, width: int = 0) -> str:
+        """The same ticked off; `width` is what its words are filled up to, for lines below each other."""
+        mark = MARKS[self.holds][0 if unicode else 1]
+        return f"{mark} {describe(self.condition):<{width}} = {self.demand}"
+
+    def __str__(self) -> str:
+        return self.line()
 
 
 @dataclass(frozen=True)
@@ -158,7 +174,10 @@ class Fit:
         reference: str | None = None,
         error: str = "peak",
     ) -> Any:
-        """Draws the exact function, the fit, its conditions and its error; see `ratfit.plot.plot_fit`."""
+        """Draws the exact function, the fit, its conditions and its error; see `ratfit.plot.plot_fit`.
+
+        Returns the axes `curves, strip`, a picture as the last line of a notebook's cell.
+        """
         from ratfit.plot import plot_fit
 
         return plot_fit(self, axes, parameters=parameters, reference=reference, error=error)

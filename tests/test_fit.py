@@ -65,6 +65,22 @@ def test_it_is_mathematics_in_a_notebook(smith):
     assert smith._repr_latex_().startswith("$\\displaystyle \\frac{")
 
 
+def test_a_condition_says_itself_in_a_line():
+    kept = rf.derive("eq12").conditions
+    assert [str(each) for each in kept] == [
+        "✓ value at 0 = 0",
+        "✓ derivative at 0 = 1",
+        "✓ value at pi/2 = 1",
+        "✓ derivative at pi/2 = 0",
+    ]
+    assert kept[0].line(unicode=False, width=12) == "ok value at 0   = 0"
+    broken = dataclasses.replace(kept[1], holds=False)
+    assert (str(broken), str(dataclasses.replace(broken, holds=None))) == (
+        "✗ derivative at 0 = 1",
+        "? derivative at 0 = 1",
+    )
+
+
 def test_records_are_frozen(smith):
     with pytest.raises(dataclasses.FrozenInstanceError):
         smith.status = "unique"

@@ -1,6 +1,7 @@
 """Pictures of fits: the data behind them, their labels and errors; never their pixels."""
 
 import math
+import struct
 
 import mpmath
 import numpy as np
@@ -8,10 +9,12 @@ import pytest
 import sympy as sp
 
 import ratfit as rf
+from ratfit._fit import Candidate, Checked
 from ratfit.cli import main
-from ratfit.plot import plot_fit
+from ratfit.plot import Picture, plot_fit
+from ratfit.plot.entries import WIDEST, rejection
 from ratfit.plot.error import PLAIN, draw_error, draw_error_curve, worst_of, worst_text
-from ratfit.plot.text import mathematics, on_a_line, significant
+from ratfit.plot.text import mathematics, on_a_line, significant, text_width
 from ratfit.plot.view import broken, cut, is_pole
 from ratfit.plot.write import write_picture
 
@@ -203,7 +206,21 @@ def test_a_hidden_root_is_drawn_dotted():
     dotted = [line for line in above.lines if line.get_linestyle() == ":"]
     heights = sorted(at(line, 0.5) for line in dotted)
     assert heights == [pytest.approx(0.5), pytest.approx(1.0)], "the fractions that cancel to x and to 1"
-    assert sum(entry.startswith("rejected: ") for entry in entries(below)) == 2
+    rejected = [entry for entry in entries(below) if entry.startswith("rejected: ")]
+    assert rejected == [
+        r"rejected: x, breaks $f(\pi/2) = 1$, $f'(\pi/2) = 0$",
+        "rejected: 1, breaks $f(0) = 0$, $f'(0) = 1$",
+    ]
+
+
+def test_a_rejected_candidate_is_told_with_what_it_breaks_or_why_else():
+    ends = [rf.Value(0, 0), rf.Value(1, 1), rf.Derivative(0, equals=0), rf.Derivative(1, equals=0)]
+    step = rf.derive(rf.Problem(variable=X, domain=(0, 1), conditions=ends, form=rf.Rational(2, 1)))
+    assert [rejection(c, step.problem) for c in step.rejected] == ["rejected: x**2/(2*x - 1), it has a pole at x = 0.5"]
+    weight = 1 / (1 + sp.exp(-X) + sp.sin(X) + sp.log(2 + X))
+    broken = Checked(rf.Integral(weight=weight, equals=sp.pi / 2), sp.pi / 2, holds=False, residual=1.0)
+    long = rejection(Candidate(sp.exp(sum(k * X**k for k in range(1, 9))), conditions=(broken,)), step.problem)
+    assert long.startswith("rejected, breaks ") and text_width(long, 9) <= WIDEST
 
 
 def test_poles_are_gaps_and_leave_the_error_relative():
@@ -270,6 +287,35 @@ def test_one_family_at_a_time_and_no_free_coefficient():
     stated = rf.Problem(variable=X, domain=(0, 1), conditions=[rf.Value(0, equals=1)], form=rf.Rational(1, 0))
     with pytest.raises(rf.RatfitError, match="--set"):
         rf.derive(stated).plot()
+
+
+def png_size(png):
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">2I", png[16:24])
+
+
+def test_a_picture_shows_itself_in_a_notebook(sine):
+    picture = sine.plot()
+    assert isinstance(picture, Picture) and tuple(picture) == (picture.curves, picture.strip)
+    width, height = picture.curves.figure.get_size_inches() * picture.curves.figure.dpi
+    assert png_size(picture._repr_png_()) == (round(width), round(height))
+    assert png_size(rf.derive("eq15").plot()._repr_png_())[0] == 660, "curves alone"
+
+
+def test_a_picture_of_pyplots_is_left_to_pyplot(sine):
+    from matplotlib import pyplot
+    from matplotlib.figure import Figure
+
+    parts = Figure(figsize=(8, 4), dpi=100).subfigures(1, 2)
+    assert png_size(sine.plot(parts[0].subplots(2))._repr_png_()) == (800, 400), "the whole of a divided figure"
+    backend = pyplot.get_backend()
+    pyplot.switch_backend("agg")
+    try:
+        figure, pair = pyplot.subplots(2)
+        assert sine.plot(pair)._repr_png_() is None
+        pyplot.close(figure)
+    finally:
+        pyplot.switch_backend(backend)
 
 
 def test_nothing_of_matplotlib_is_left_changed(smith):

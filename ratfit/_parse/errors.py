@@ -34,8 +34,8 @@ def quote(piece: str) -> str:
 
 
 def shortened(text: str, most: int = 200) -> str:
-    """A text, or its beginning where it is longer than anybody reads within a sentence."""
-    return text if len(text) <= most else f"{text[: most - 4]} ..."
+    """A text, or its beginning where it is longer than anybody reads within a sentence, or than there is room for."""
+    return text if len(text) <= most else f"{text[: most - 4].rstrip(' ,')} ..."
 
 
 @contextmanager

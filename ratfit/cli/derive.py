@@ -63,8 +63,7 @@ def _write_picture(fit: Fit, file: str, reference: str | None) -> None:
         return
     from ratfit.plot import plot_fit
 
-    curves, _ = plot_fit(fit, reference=reference)
-    write_picture(curves.figure, file)  # type: ignore[arg-type]  # a Figure of its own
+    write_picture(plot_fit(fit, reference=reference).curves.figure, file)  # type: ignore[arg-type]  # a Figure of its own
 
 
 def _with_settings(problem: Problem, settings: dict[str, str]) -> Problem:

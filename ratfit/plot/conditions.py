@@ -9,24 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ratfit._condition import AbstractPointCondition, Equation, Integral, Limit, describe
+from ratfit._condition import AbstractPointCondition, Limit
 from ratfit._fit import Checked, Fit
-from ratfit._problem import Problem
 from ratfit.plot.curves import FitCurves
+from ratfit.plot.entries import condition_text, entry, said
 from ratfit.plot.marks import Marker, Window, draw_asymptote, draw_point, draw_pole, draw_tangent, room_between
-from ratfit.plot.style import BLACK, BLUE, GREEN, GREY, LETTERS, ORANGE
-from ratfit.plot.text import on_a_line, plain, shortened, text_width
+from ratfit.plot.style import BLACK, BLUE, GREEN, GREY, ORANGE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 KINDS = ("value", "slope", "derivative", "limit", "pole", "integral", "equation")
 """The entries below a picture, in order."""
-
-WIDEST = 340
-"""Points that an entry may take: no more than the axes above it."""
-
-ARROW = r"\to"
 
 
 @dataclass(frozen=True)
@@ -48,12 +42,6 @@ class Page:
         return zip(self.curves, self.scales, strict=True)
 
 
-def letter(problem: Problem) -> str:
-    """What the function is called in a picture: f, but where a parameter has that name."""
-    taken = {symbol.name for symbol in (problem.variable, *problem.parameters)}
-    return next(name for name in "fFgGhyY" if name not in taken)
-
-
 def draw_conditions(page: Page, fit: Fit) -> list[Any]:
     """Marks every condition and returns one entry of the legend for each kind, with what it says.
 
@@ -62,13 +50,11 @@ def draw_conditions(page: Page, fit: Fit) -> list[Any]:
     """
     found: dict[str, tuple[Any, list[str]]] = {}
     for checked in fit.conditions:
-        kind, text = _kind(checked, fit.problem.variable), _text(checked, fit)
-        if text_width(text, 9) > WIDEST - 50:
-            text = plain(f"{describe(checked.condition)} = {checked.demand}")
+        kind = _kind(checked, fit.problem.variable)
         handle = _draw(page, fit, checked, kind) or said("")
-        found.setdefault(kind, (handle, []))[1].append(text)
+        found.setdefault(kind, (handle, []))[1].append(condition_text(checked, fit.problem))
     for kind, (handle, texts) in found.items():
-        handle.set_label(_entry(kind, texts))
+        handle.set_label(entry(f"{kind}:", texts))
     return [found[kind][0] for kind in KINDS if kind in found]
 
 
@@ -141,71 +127,3 @@ def _draw_limits(page: Page, fit: Fit, checked: Checked) -> Any:
         if inside.any():
             handle = draw_asymptote(page.axes, places[inside], drawn[inside], page.colours[2])
     return handle
-
-
-def said(text: str) -> Any:
-    """An entry of the legend that stands for nothing drawn."""
-    from matplotlib.lines import Line2D
-
-    return Line2D([], [], linestyle="none", label=text)
-
-
-def _text(checked: Checked, fit: Fit) -> str:
-    """A condition as mathematics between dollars, or as plain text where that cannot be set."""
-    condition, x, f = checked.condition, fit.problem.variable, letter(fit.problem)
-    if isinstance(condition, AbstractPointCondition):
-        primes = "'" * condition.order if condition.order < 4 else f"^{{({condition.order})}}"
-        return _equation(f"{f}{primes}({_math(condition.at)})", checked.demand)
-    if isinstance(condition, Limit):
-        return _limit_text(condition, checked.demand, x, f)
-    if isinstance(condition, Integral):
-        low, high = (_math(end) for end in condition.range(fit.problem.domain))
-        return _equation(rf"\int_{{{low}}}^{{{high}}} {_weighted(condition.weight, f)}\,d{_math(x)}", checked.demand)
-    assert isinstance(condition, Equation)
-    more = f", with {condition.order} derivatives" if condition.order else ""
-    return f"{_dollars(_math(condition.residual), '= 0')} at {_dollars(_math(x), '=', _math(condition.at))}{more}"
-
-
-def _weighted(weight: sp.Expr, f: str) -> str:
-    above, below = sp.fraction(weight)
-    written = f if above == 1 else rf"{_product(above)}\,{f}"
-    divisor = rf"\left({_math(below)}\right)" if below.is_Add or below.is_Mul else _math(below)
-    return written if below == 1 else f"{written}/{divisor}"
-
-
-def _limit_text(condition: Limit, demand: sp.Expr, x: sp.Symbol, f: str) -> str:
-    to = f"{_math(x)} {ARROW} {_math(condition.at)}"
-    difference = f if condition.minus == 0 else rf"\left({f} - {_product(condition.minus)}\right)"
-    if condition.scale == 1 and condition.minus != 0:
-        difference = f"{f} - {_product(condition.minus)}"
-    scale = "" if condition.scale == 1 else _product(condition.scale)
-    return f"{_dollars(difference, scale, ARROW, _math(demand))} as {_dollars(to)}"
-
-
-def _equation(left: str, demand: sp.Expr) -> str:
-    return _dollars(left, "=", _math(demand))
-
-
-def _dollars(*parts: str) -> str:
-    return f"${' '.join(parts)}$"
-
-
-def _product(expression: sp.Expr) -> str:
-    written = _math(expression)
-    return rf"\left({written}\right)" if expression.is_Add else written
-
-
-def _math(expression: sp.Expr) -> str:
-    written = on_a_line(expression)
-    return written if written is not None else rf"\mathrm{{{plain(str(expression))}}}"
-
-
-def _entry(kind: str, texts: Sequence[str]) -> str:
-    """As many of the texts as fit on a line."""
-    text = f"{kind}: {texts[0] if '$' in texts[0] else shortened(texts[0], LETTERS - 10)}"
-    for more in dict.fromkeys(texts[1:]):
-        longer = f"{text}, {more}"
-        if text_width(longer, 9) > WIDEST:
-            return f"{text}, …"
-        text = longer
-    return text

@@ -7,14 +7,16 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ratfit._fit import Fit
-from ratfit._parse import RatfitError
-from ratfit.plot.conditions import Page, draw_conditions, letter, said
+from ratfit._parse import RatfitError, shortened
+from ratfit.plot.conditions import Page, draw_conditions
 from ratfit.plot.curves import ERRORS, FitCurves, Parameters, curves_of, other_formulas
+from ratfit.plot.entries import letter, rejection, said
 from ratfit.plot.error import PERCENT, PLAIN, Worst, draw_error, draw_error_curve, worst_text
 from ratfit.plot.labels import exact_text, title_of, x_label
 from ratfit.plot.marks import Window
+from ratfit.plot.picture import Picture
 from ratfit.plot.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, SERIES, axes_width, dress, legend_below, settings
-from ratfit.plot.text import plain, shortened, text_depth
+from ratfit.plot.text import plain, text_depth
 from ratfit.plot.view import span
 
 if TYPE_CHECKING:
@@ -36,7 +38,7 @@ def plot_fit(
     parameters: Parameters | None = None,
     reference: str | None = None,
     error: str = "peak",
-) -> tuple[Axes, Axes | None]:
+) -> Picture:
     """Draws a fit over the domain: the exact function wide and pale, the fit thin, the conditions marked, the error.
 
     **Arguments:**
@@ -49,8 +51,8 @@ def plot_fit(
     - `error`: the error strip shows `"peak"`, the error in parts of the largest |exact| that is drawn, `"relative"`, in
       parts of |exact|, or the `"absolute"` error. An exact function with a pole has no peak: its strip is relative.
 
-    **Returns** the axes of the curves and of the error, the latter None where there is none. Nothing is shown;
-    `axes.figure.savefig(...)` writes it.
+    **Returns** the axes of the curves and of the error, the latter None where there is none, as a pair that is a
+    picture in a notebook. Nothing else shows it; `picture.curves.figure.savefig(...)` writes it.
 
     **Fails** with `RatfitError` where there is no fit, a coefficient is still free, or for a parameter or reference
     that the problem does not have.
@@ -68,7 +70,7 @@ def plot_fit(
         lowest = above if below is None else below
         lowest.set_xlabel(plain(x_label(fit, curves, parameters)))
         legend_below(lowest, handles, is_ours=axes is None)
-    return above, below
+    return Picture(above, below)
 
 
 def _axes(given: Axes | Sequence[Axes] | None, has_strip: bool) -> tuple[Axes, Axes | None]:
@@ -170,9 +172,8 @@ def _draw_others(axes: Axes, fit: Fit, curve: FitCurves) -> list[Any]:
         heights = curve.drawn(formula, curve.places)
         colour, dashes = ((RED, PURPLE, GREEN)[place], ":") if candidate.reason else (GREY, ("-", "--", "-.")[place])
         (line,) = axes.plot(curve.places, heights, color=colour, linestyle=dashes, linewidth=1.2, zorder=2.5)
-        what = shortened(str(candidate.expression), 25)
-        why = f"rejected: {what}: {candidate.reason}" if candidate.reason else f"another answer: {what}"
-        line.set_label(plain(shortened(why, 70)))
+        another = plain(f"another answer: {shortened(str(candidate.expression), 50)}")
+        line.set_label(rejection(candidate, fit.problem) if candidate.reason else another)
         handles.append(line)
     return handles
 

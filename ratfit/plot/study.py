@@ -12,11 +12,12 @@ import mpmath
 import sympy as sp
 
 from ratfit._condition import Limit
+from ratfit._parse import shortened
 from ratfit._study import Fact, Study
 from ratfit._study.curve import Curve
 from ratfit.plot.marks import Marker, Window, draw_asymptote, draw_point, draw_pole, draw_tangent, room_between
 from ratfit.plot.style import BLACK, BLUE, LETTERS, PURPLE, RED, dress, legend_below, settings
-from ratfit.plot.text import plain, shortened
+from ratfit.plot.text import plain
 from ratfit.plot.view import broken, cut, span
 
 if TYPE_CHECKING:

@@ -9,11 +9,6 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
 
-def shortened(text: str, letters: int) -> str:
-    """The text, or of a long one its beginning."""
-    return text if len(text) <= letters else text[: letters - 2].rstrip(" ,") + " …"
-
-
 def plain(text: str) -> str:
     """A text in which matplotlib sees no mathematics."""
     return text.replace("$", r"\$")

@@ -34,8 +34,12 @@ def picture_format(file: str | Path) -> str:
 
 def write_picture(figure: Figure, file: str | Path) -> None:
     """Writes a figure as its file's suffix says; RatfitError for another suffix and for a place that takes no file."""
-    format_ = picture_format(file)
-    drawn = BytesIO()
+    write_bytes(file, drawn(figure, picture_format(file), DOTS))
+
+
+def drawn(figure: Figure, format_: str, dots: float) -> bytes:
+    """A figure as the bytes of a file of a format, with so many dots an inch where it has dots."""
+    written = BytesIO()
     with settings():
-        figure.savefig(drawn, format=format_, dpi=DOTS, metadata=_UNSAID[format_])
-    write_bytes(file, drawn.getvalue())
+        figure.savefig(written, format=format_, dpi=dots, metadata=_UNSAID[format_])
+    return written.getvalue()

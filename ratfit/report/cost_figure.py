@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ratfit.report.document import Figure, printable
-from ratfit.report.drawing import drawing, legend, shortened
+from ratfit.report.drawing import drawing, label, legend
 from ratfit.report.svg import SERIES, svg_of
 
 if TYPE_CHECKING:
@@ -52,8 +52,8 @@ def cost_figure(name: str, points: Sequence[Point], definition: str, where: str)
         for place, point in enumerate(shown):
             _draw(axes, point, floor, series.index(point.series) % len(SERIES), f"point-{place}")
         _make_logarithmic(axes, shown, floor)
-        axes.set_xlabel(f"gamma on {shortened(where)}")
-        axes.set_ylabel(f"eps, {shortened(definition)}")
+        axes.set_xlabel(f"gamma on {label(where)}")
+        axes.set_ylabel(f"eps, {label(definition)}")
         legend(figure, [(SERIES[n % len(SERIES)], MARKERS[n % len(SERIES)], one) for n, one in enumerate(series)])
         alt = printable(f"{definition} against gamma on {where}: {', '.join(series)}")
         titles = {f"point-{place}": printable(point.label) for place, point in enumerate(shown)}

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from ratfit._parse import shortened
 from ratfit.report.document import printable
 from ratfit.report.svg import SETTINGS
 
@@ -40,7 +41,7 @@ def legend(figure: Drawing, entries: Sequence[tuple[str, str, str]]) -> None:
         Line2D([], [], color=colour, marker=marker, linestyle="none" if marker else "-", markersize=8)
         for colour, marker, _ in entries
     ]
-    texts = [shortened(text) for _, _, text in entries]
+    texts = [label(text) for _, _, text in entries]
     columns = max(1, min(len(texts), _LINE // (6 + max(map(len, texts)))))
     # A text that begins with an underscore would hide its entry: places are kept by letters, and filled afterwards.
     below = figure.legend(handles, ["n" * len(t) for t in texts], loc="outside lower center", ncols=columns)
@@ -48,7 +49,6 @@ def legend(figure: Drawing, entries: Sequence[tuple[str, str, str]]) -> None:
         shown.set_text(text)
 
 
-def shortened(text: str) -> str:
-    """The text on one line, and of a long one its beginning."""
-    text = printable(" ".join(text.split()))
-    return text if len(text) <= LETTERS else text[: LETTERS - 2] + " …"
+def label(text: str) -> str:
+    """The text as a label: on one line, and of a long one its beginning."""
+    return shortened(printable(" ".join(text.split())), LETTERS)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ratfit.report.document import Figure, printable
-from ratfit.report.drawing import drawing, legend, shortened
+from ratfit.report.drawing import drawing, label, legend
 from ratfit.report.measured import number
 from ratfit.report.svg import INK, SERIES, svg_of
 
@@ -64,7 +64,7 @@ def error_figure(name: str, curves: Sequence[ErrorCurve], against: str) -> Figur
         below.axhline(0, color=INK, linewidth=0.8)
         above.set_ylabel(f"value{unit}")
         below.set_ylabel(f"error{unit}")
-        below.set_xlabel(shortened(shown[0].variable))
+        below.set_xlabel(label(shown[0].variable))
         if len(shown) > 1:
             legend(figure, [(SERIES[n], "", curve.label) for n, curve in enumerate(shown)])
         alt = printable(f"{against} and its fit, and the fit's error, over {shown[0].variable}")

@@ -9,7 +9,7 @@ import sympy as sp
 
 from ratfit._condition import describe
 from ratfit._field import is_zero
-from ratfit._fit import Checked, Fit
+from ratfit._fit import Fit
 from ratfit._parse import shortened
 from ratfit._problem import Problem
 from ratfit._problem_text import form_table
@@ -20,8 +20,6 @@ from ratfit.report.unicode import lines as formula_lines
 WIDTH = 110
 DRAWN = 10
 """Digits of a decimal in a drawn formula and in a table; the fit itself has all that are known."""
-
-MARKS = {True: ("✓", "ok"), False: ("✗", "NO"), None: ("?", "??")}
 
 
 def fit_text(fit: Fit, card: Card | None = None, *, unicode: bool = True) -> str:
@@ -39,7 +37,7 @@ def fit_text(fit: Fit, card: Card | None = None, *, unicode: bool = True) -> str
         lines += _formula_lines(fit, unicode)
     lines += _candidate_lines(fit)
     if fit.conditions:
-        lines += ["", "  conditions", *(f"    {_condition_line(c, unicode)}" for c in fit.conditions)]
+        lines += ["", "  conditions", *(f"    {c.line(unicode=unicode, width=28)}" for c in fit.conditions)]
     if fit.rejected:
         lines += [
             "",
@@ -118,16 +116,6 @@ def _table_lines(table: Table) -> list[str]:
     head = [*(p.name for p in table.parameters), *(u.name for u in table.unknowns)]
     rows = [[sp.sstr(sp.N(v, DRAWN)) for v in (*node, *row)] for node, row in zip(table.nodes, table.rows, strict=True)]
     return ["", "  table", *(f"    {line}" for line in aligned([head, *rows]))]
-
-
-def _condition_line(checked: Checked, unicode: bool) -> str:
-    mark = MARKS[checked.holds][0 if unicode else 1]
-    return f"{mark} {describe(checked.condition):<28} = {checked.demand}"
-
-
-def condition_line(checked: Checked) -> str:
-    """A condition with the number it asks for, in words."""
-    return f"{describe(checked.condition)} = {checked.demand}"
 
 
 def _cost_text(fit: Fit) -> str:

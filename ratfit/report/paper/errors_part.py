@@ -13,7 +13,7 @@ from ratfit.report.measured import number
 from ratfit.report.paper.closest import Finding
 from ratfit.report.paper.closest_part import closest_sentence, percent, searched
 from ratfit.report.paper.measurements import Derived
-from ratfit.report.text import agreement, condition_line
+from ratfit.report.text import agreement
 
 SHOWN = ("peak_mean", "peak_rms", "peak_max", "relative_mean", "relative_max")
 """The definitions that a table shows; the page has all, folded."""
@@ -26,7 +26,7 @@ def equation(derived: Derived, findings: Sequence[Finding]) -> Section:
         ("derived", (Code(str(fit.expression)), f" ({fit.status}, {fit.route} route)")),
         ("printed", (Code(shown.printed), f": {agreement(fit, shown)}")),
         *(("choice", f"{s} = {v} of {s} > {fit.free[s][0]}") for s, v in fit.choice.items()),
-        *(("keeps", condition_line(checked)) for checked in fit.conditions),
+        *(("keeps", checked.stated) for checked in fit.conditions),
         ("cost", f"{counts(fit.cost.as_dict())} a sample; the paper: {_operations(shown.operations)}"),
         ("the paper", f"eps {_figure(shown.epsilon)}, gamma {_figure(shown.gamma)}"),
     ]

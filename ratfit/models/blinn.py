@@ -29,6 +29,7 @@ BLINN = Model(
     "blinn1977; the normalisation is derived in `normalisation`",
     {**_mixture.DEFAULTS, "exponent": 200.0},
     note="All light is reflected at normal incidence, less of it elsewhere.",
+    sampler="phong",  # of half vectors
 )
 
 BLINN_AS_PRINTED = Model(
@@ -39,4 +40,5 @@ BLINN_AS_PRINTED = Model(
     "polimi2024, The Blinn reflection model",
     {"diffuse": 0.5, "specular": 0.5, "exponent": 200.0},
     note=_scanline.NOTE,
+    sampler="phong",
 )

@@ -34,6 +34,8 @@ SMOOTHIE = Model(
     "smoothie, Microfacet Smoothie, with the factor (4 + alpha^2)/pi that normalises its D",
     DEFAULTS,
     note="D F G/(4 v v') with G = 4 v v'/(h.h); gloss is the reflectance at normal incidence.",
+    facets=distribution.smoothie(T, ALPHA),
+    sampler="smoothie",
 )
 
 SMOOTHIE_AS_PRINTED = Model(
@@ -44,6 +46,8 @@ SMOOTHIE_AS_PRINTED = Model(
     "smoothie, Microfacet Smoothie",
     DEFAULTS,
     note="The integral of D times the cosine is pi/(4 + alpha^2) in place of 1.",
+    facets=distribution.smoothie_as_printed(T, ALPHA),
+    sampler="smoothie",
 )
 
 SMOOTHIE_CODE_AS_PRINTED = Model(
@@ -54,6 +58,8 @@ SMOOTHIE_CODE_AS_PRINTED = Model(
     "smoothie, Implementation",
     DEFAULTS,
     note=PUNCTUAL,
+    facets=distribution.smoothie_as_printed(T, ALPHA),
+    sampler="smoothie",
 )
 
 SMOOTHIE_APPROXIMATE = Model(
@@ -67,6 +73,7 @@ SMOOTHIE_APPROXIMATE = Model(
         "The lobe falls with the distance of the projected directions: its albedo is an integral over the unit disc, "
         "greatest at normal incidence, where the factor makes it 1."
     ),
+    sampler="smoothie",
 )
 
 SMOOTHIE_APPROXIMATE_AS_PRINTED = Model(
@@ -77,4 +84,5 @@ SMOOTHIE_APPROXIMATE_AS_PRINTED = Model(
     "smoothie, Approximate Smoothie",
     DEFAULTS,
     note=PUNCTUAL,
+    sampler="smoothie",
 )

@@ -241,6 +241,19 @@ def test_limits(name, place, limit):
     assert lowered(name)(*place) == pytest.approx(limit, rel=1e-14)
 
 
+@pytest.mark.parametrize("name", [name for name in PRINTED if "azimuth" not in name and "third" not in name])
+def test_a_number_may_stand_for_roughness(name):
+    """Also 0 and 1, at which sympy would divide by 0 or compare what is no number."""
+    mirror, diffuse = (math.inf, 0) if name == "phong" else (0, 1)
+    for azimuth in [()] if len(ARGUMENTS[name]) == 2 else [(0,), (0.3,)]:
+        rough = [sp.S(mirror if mirror == 0 else sp.oo)] * (len(ARGUMENTS[name]) - 1 - len(azimuth))
+        assert lower(getattr(D, name)(T, *azimuth, *rough), (T,))(1.0) == math.inf
+        assert lower(getattr(D, name)(T, *azimuth, *rough), (T,))(0.9) == 0
+        place = (0.9, *azimuth, *(diffuse for _ in rough))
+        expected = PRINTED[name](*map(mpf, place))
+        assert lower(getattr(D, name)(T, *place[1:]), (T,))(0.9) == pytest.approx(float(expected), rel=1e-14)
+
+
 COSINES = [-1, -0.5, -1e-300, 0, 1e-300, 1e-30, 1e-10, 1e-3, 0.3, 0.5, 0.7, 0.99, 1 - 1e-7, 1 - 2**-53, 1, 1 + 2**-52]
 AZIMUTHS = [0, 1e-30, 1e-8, 0.3, 0.7, 1 - 1e-7, 1]
 ROUGH = [0, 1e-300, 1e-40, 1e-30, 1e-16, 1e-15, 1e-12, 1e-6, 1e-3, 0.1, 0.5, 0.9, 1]

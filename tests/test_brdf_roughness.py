@@ -77,6 +77,7 @@ def test_conversions_keep_what_their_names_say(alpha):
         one = mpf(1)
         assert mpmath.almosteq(beckmann(one), phong(roughness.exponent_by_peak)(one), 1e-15)
         assert mpmath.almosteq(moment(beckmann, 2), alpha**2, 1e-10)  # the mean square over both axes
+        assert mpmath.almosteq(moment(beckmann, 1), converted(roughness.mean_slope), 1e-10)
         assert mpmath.almosteq(moment(beckmann, 2) / 2, converted(roughness.slope_from_alpha) ** 2, 1e-10)
         assert mpmath.almosteq(moment(phong(roughness.exponent_by_slope), 2), alpha**2, 1e-6)
         median = alpha**2 * mpmath.log(2)

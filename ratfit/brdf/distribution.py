@@ -32,7 +32,7 @@ def beckmann(t: Expr, alpha: Expr) -> Expr:
     Source: schlick1994 Eq. 20 (m is alpha, D is pi times this); microfacet and polimi2024 (rho is alpha: the root
     mean square slope, not the average slope that is said there).
     """
-    lobe = _gaussian(t, 1 / alpha**2, 1 / _rough(alpha) ** 2, lambda t: pi * _rough(alpha) ** 2 * t**4)
+    lobe = _gaussian(t, _beyond(t, 1, alpha**2), 1 / _rough(alpha) ** 2, lambda t: pi * _rough(alpha) ** 2 * t**4)
     return _lobe(t, alpha < SMOOTH, _dirac(t), lobe)
 
 
@@ -120,7 +120,7 @@ def ward_third_form_as_printed(t: Expr, w: Expr, m: Expr, n: Expr) -> Expr:
 
     Source: polimi2024; the normalisation is that of `ward_as_printed`.
     """
-    along, across, endless = _rough(m), _rough(n), _beyond(t, _spread(w, m, n))
+    along, across, endless = _rough(m), _rough(n), _ward_beyond(t, w, m, n)
     exponent = _sine_squared(t) * _spread(w, along, across) / instead(t, 1, endless) ** 2
     lobe = Piecewise((oo, endless), (exp(exponent) / (along * across), True))
     return _lobe(t, Min(m, n) < SMOOTH, oo, lobe)
@@ -263,24 +263,25 @@ def _spread(w: Expr, along: Expr, across: Expr) -> Expr:
     return w**2 / along**2 + (1 - w) * (1 + w) / across**2
 
 
-def _beyond(t: Expr, spread: Expr) -> Relational:
-    return (1 - t) * (1 + t) * spread > UNDERFLOW * t**2
+def _beyond(t: Expr, spread: Expr | int, scale: Expr) -> Relational:
+    """Whether tan^2 spread/scale is beyond `UNDERFLOW`, for any t and scale: without a division."""
+    return (1 - t) * (1 + t) * spread >= UNDERFLOW * t**2 * scale
 
 
-def _gaussian(t: Expr, spread: Expr, rough_spread: Expr, below: Callable[[Expr], Expr]) -> Expr:
-    """exp(-tan^2 spread)/below; where the exponential is nothing, below may be 0 too.
+def _ward_beyond(t: Expr, w: Expr, m: Expr, n: Expr) -> Relational:
+    return _beyond(t, (w * n) ** 2 + (1 - w) * (1 + w) * m**2, (m * n) ** 2)
 
-    The condition takes the spread as it is: a piece within a condition is more than arrays can select by.
-    """
-    nothing = _beyond(t, spread)
+
+def _gaussian(t: Expr, nothing: Relational, spread: Expr, below: Callable[[Expr], Expr]) -> Expr:
+    """exp(-tan^2 spread)/below; where the exponential is nothing, below may be 0 too."""
     inside = instead(t, 1, nothing)
-    gaussian = exp(-_sine_squared(t) * rough_spread / inside**2) / below(inside)
+    gaussian = exp(-_sine_squared(t) * spread / inside**2) / below(inside)
     return Piecewise((S.Zero, nothing), (gaussian, True))
 
 
 def _ward(t: Expr, w: Expr, m: Expr, n: Expr, below: Callable[[Expr, Expr, Expr], Expr]) -> Expr:
     along, across = _rough(m), _rough(n)
-    lobe = _gaussian(t, _spread(w, m, n), _spread(w, along, across), lambda t: below(along, across, t))
+    lobe = _gaussian(t, _ward_beyond(t, w, m, n), _spread(w, along, across), lambda t: below(along, across, t))
     return _lobe(t, Min(m, n) < SMOOTH, _line(t, w, m, n), lobe)
 
 

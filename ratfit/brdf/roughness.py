@@ -9,7 +9,7 @@ r, p    schlick1994's roughness and isotropy
 smoothie's alpha, `wide` here
 
 A conversion is an identity where both distributions are then the same function, else it keeps one property, which its
-name says. Letters are numbers or symbols, at least 0; where a conversion has no finite value it is infinite.
+name says. Letters are symbols or sympy's numbers, at least 0; on arrays a conversion without finite value is infinite.
 """
 
 from sympy import Expr, log, pi, sqrt
@@ -23,6 +23,11 @@ def alpha_from_slope(slope: Expr) -> Expr:
 def slope_from_alpha(alpha: Expr) -> Expr:
     """slope = alpha/sqrt(2), the inverse of `alpha_from_slope`."""
     return alpha / sqrt(2)
+
+
+def mean_slope(alpha: Expr) -> Expr:
+    """sqrt(pi)/2 alpha, the average slope of Beckmann's facets, which is what polimi2024 says that alpha is."""
+    return sqrt(pi) / 2 * alpha
 
 
 def exponent_by_peak(alpha: Expr) -> Expr:

@@ -21,11 +21,10 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from ratfit.brdf import distribution
 from ratfit.models._model import Model
-from ratfit.models.cook_torrance import held
+from ratfit.models._schlick import Layer, azimuth, both_visible, layer, mirror, weighted_zenith, weights
 from ratfit.models.directions import V_PRIME, T, U, V, W
-from ratfit.models.schlick import DEFAULTS, SPECTRAL, Layer, layer, mirror, visible, weighted, weights
+from ratfit.models.schlick import DEFAULTS, SPECTRAL
 
 ENDS = sp.Rational(1, 10)
 """hidden = r/(r + ENDS) times `hidden_shape`."""
@@ -77,15 +76,10 @@ def _polynomial(alpha: sp.Expr, p: sp.Expr, of_v: list[sp.Expr]) -> sp.Expr:
     return sp.Add(*(row * power for row, power in zip(rows, of_v, strict=True)))
 
 
-def masked(r: sp.Expr, p: sp.Expr) -> sp.Expr:
-    """G(v) G(v')/(v v') with k = sqrt(r)/(1 + p) in place of r."""
-    k = roughness(r) / (1 + p)
-    return 1 / (visible(held(V), k) * visible(held(V_PRIME), k))
-
-
 def facets(layer: Layer) -> sp.Expr:
-    """b times G G' Z A/(4 pi v v'), of albedo 1 at most."""
-    return weighted(T, layer.r) * distribution.azimuth(W, layer.p) * masked(layer.r, layer.p) / sp.pi
+    """b times G G' Z A/(4 pi v v') with k = sqrt(r)/(1 + p) in place of r, of albedo 1 at most."""
+    lobe = weighted_zenith(T, layer.r) * azimuth(W, layer.p)
+    return lobe / (sp.pi * both_visible(roughness(layer.r) / (1 + layer.p)))
 
 
 def reemitted(layer: Layer) -> sp.Expr:
@@ -115,7 +109,7 @@ def conserving(spectral: str, name: str) -> Model:
         tuple(one),
         f"schlick1994, Eqs. 22, 28, 32, 33 and {where[4:]}; kulla2017",
         {p.name: value for p, value in zip(one, DEFAULTS[0], strict=True)},
-        s(V, one.c) * mirror(one),
+        s(V, one.c) * mirror(one.r),
         note="The albedo is at most 1, C = 1 included; the part of it that C = 1, p = 1 lose is 1.8 % at most.",
     )
 

@@ -1,0 +1,174 @@
+"""The directional factors of Schlick's model, of one layer.
+
+Z and A are those of `ratfit.brdf.distribution` without the limits at r = 0 and p = 0, where no layer comes: a sum is
+made of as few fractions as it can be, which is what the model costs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ratfit._target import Parameter, parameter
+from ratfit.models.directions import V_PRIME, T, V, W
+
+LOW, LOW_PRINTED = sp.Rational(1, 10**9), sp.Rational(1, 10**5)
+"""Cosines below count as this much where one divides by them, by how many is the reason: float32 holds the result."""
+
+NEARLY_MIRROR = sp.Rational(1, 10**12)
+"""Z of a smaller r counts as that of this one: its lobe is narrower than float64 can tell directions apart."""
+
+SMALLEST = sp.Rational(1, 10_000)
+"""The least r of the factors that come to a Dirac at r = 0; with weights, a mirror takes the Dirac's place."""
+
+SEEN, LIT = sp.Max(V, LOW), sp.Max(V_PRIME, LOW)
+"""v and v', to divide by."""
+
+
+@dataclass(frozen=True)
+class Layer:
+    """The parameters of a SINGLE material: reflection factor, roughness, isotropy."""
+
+    c: Parameter
+    r: Parameter
+    p: Parameter
+
+    def __iter__(self) -> Iterator[Parameter]:
+        return iter((self.c, self.r, self.p))
+
+
+@dataclass(frozen=True)
+class Directional:
+    """A directional factor, right and as printed, the least r it takes, and the share of a mirror that goes with it."""
+
+    formula: Callable[[Layer], sp.Expr]
+    printed: Callable[[Layer], sp.Expr]
+    source: str
+    least: sp.Expr
+    mirror: Callable[[sp.Expr], sp.Expr]
+
+
+def layer(mark: str, least: sp.Expr) -> Layer:
+    """The parameters of a layer, their names ending with the mark; r from the least on."""
+    c, r = parameter(f"C{mark}", 0, 1), parameter(f"r{mark}", least, 1)
+    return Layer(c, r, parameter(f"p{mark}", "1/1000", 1))
+
+
+def weights(r: sp.Expr) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """The shares a of the diffuser, b of the facets and c of the mirror (schlick1994, Eq. 33)."""
+    rest, rough = (1 - 2 * r) ** 2, r >= sp.S.Half
+    return sp.Piecewise((rest, rough), (0, True)), 4 * r * (1 - r), sp.Piecewise((0, rough), (rest, True))
+
+
+def no_mirror(r: sp.Expr) -> sp.Expr:
+    """0."""
+    return sp.S.Zero
+
+
+def mirror(r: sp.Expr) -> sp.Expr:
+    """c, the share of the mirror in Eq. 32."""
+    return weights(r)[2]
+
+
+# --- Z, A and G ---
+
+
+def zenith(t: sp.Expr, r: sp.Expr) -> sp.Expr:
+    """Z = r/(1 + r t^2 - t^2)^2 (schlick1994, Eq. 28), for r > 0."""
+    return r / (r * t**2 + (1 - t) * (1 + t)) ** 2
+
+
+def weighted_zenith(t: sp.Expr, r: sp.Expr) -> sp.Expr:
+    """b Z(t)/4 with the b of Eq. 33: finite for every r, and 0 for r = 0."""
+    return (1 - r) * r * zenith(t, sp.Max(r, NEARLY_MIRROR))
+
+
+def azimuth(w: sp.Expr, p: sp.Expr) -> sp.Expr:
+    """A = p/(p^2 - p^2 w^2 + w^2), which keeps Eq. 27, for p > 0."""
+    return p / (p**2 * (1 - w) * (1 + w) + w**2)
+
+
+def azimuth_as_printed(w: sp.Expr, p: sp.Expr) -> sp.Expr:
+    """A as schlick1994 prints it in Eq. 28: the square root of that which keeps Eq. 27."""
+    return sp.sqrt(azimuth(w, p))
+
+
+def visible(v: sp.Expr, k: sp.Expr) -> sp.Expr:
+    """v/G(v) = v + k (1 - v), of the masking of Eq. 31, k = r."""
+    return v + k * (1 - v)
+
+
+def both_visible(k: sp.Expr) -> sp.Expr:
+    """v v'/(G(v) G(v'))."""
+    return visible(SEEN, k) * visible(LIT, k)
+
+
+def obstructed(r: sp.Expr) -> sp.Expr:
+    """(1 - G(v) G(v')) v v'/(G(v) G(v')), written without the difference."""
+    return r * (SEEN * (1 - LIT) + LIT * (1 - SEEN) + r * (1 - SEEN) * (1 - LIT))
+
+
+# --- D ---
+
+Azimuth = Callable[[sp.Expr, sp.Expr], sp.Expr]
+
+
+def facets(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
+    """Z A/(4 pi v v') (schlick1994, Eq. 25)."""
+    return lambda layer: zenith(T, layer.r) * a(W, layer.p) / (4 * sp.pi * SEEN * LIT)
+
+
+def reemitted(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
+    """(G G' Z A + 1 - G G')/(4 pi v v') (schlick1994, Eq. 30)."""
+
+    def formula(layer: Layer) -> sp.Expr:
+        whole = zenith(T, layer.r) * a(W, layer.p) * SEEN * LIT + obstructed(layer.r)
+        return whole / (4 * sp.pi * SEEN * LIT * both_visible(layer.r))
+
+    return formula
+
+
+def continuum_of_facets(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
+    """a/pi + b times `facets` (schlick1994, Eq. 32 with B = Z A, Eq. 33)."""
+
+    def formula(layer: Layer) -> sp.Expr:
+        lobe = weighted_zenith(T, layer.r) * a(W, layer.p)
+        return weights(layer.r)[0] / sp.pi + lobe / (sp.pi * SEEN * LIT)
+
+    return formula
+
+
+def continuum(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
+    """a/pi + b times `reemitted` (schlick1994, Eq. 32 with B = G G' Z A + 1 - G G', Eq. 33)."""
+
+    def formula(layer: Layer) -> sp.Expr:
+        diffuse, b, _ = weights(layer.r)
+        whole = weighted_zenith(T, layer.r) * a(W, layer.p) * SEEN * LIT + b / 4 * obstructed(layer.r)
+        return diffuse / sp.pi + whole / (sp.pi * SEEN * LIT * both_visible(layer.r))
+
+    return formula
+
+
+def twice(right: Callable[[Layer], sp.Expr]) -> Callable[[Layer], sp.Expr]:
+    """Eq. 32 to the letter, its B being "given by" Eq. 25 or 30: what is not a/pi is over 4 pi v v' once more."""
+
+    def formula(layer: Layer) -> sp.Expr:
+        diffuse = weights(layer.r)[0] / sp.pi
+        once_more = (right(layer) - diffuse) / (4 * sp.pi * SEEN * LIT)
+        return diffuse + once_more.xreplace({SEEN: sp.Max(V, LOW_PRINTED), LIT: sp.Max(V_PRIME, LOW_PRINTED)})
+
+    return formula
+
+
+PRINTED = azimuth_as_printed
+
+DIRECTIONAL: Mapping[str, Directional] = {
+    "facets": Directional(facets(), facets(PRINTED), "Eq. 25", SMALLEST, no_mirror),
+    "reemitted": Directional(reemitted(), reemitted(PRINTED), "Eq. 30", SMALLEST, no_mirror),
+    "continuum-of-facets": Directional(
+        continuum_of_facets(), twice(continuum_of_facets(PRINTED)), "Eqs. 25, 32, 33", sp.S.Zero, mirror
+    ),
+    "continuum": Directional(continuum(), twice(continuum(PRINTED)), "Eqs. 30, 32, 33", sp.S.Zero, mirror),
+}

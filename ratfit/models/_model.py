@@ -11,7 +11,7 @@ import sympy as sp
 from ratfit._lower import lower
 from ratfit._parse import RatfitError, nearest
 from ratfit._target import Parameter
-from ratfit.models.directions import LETTERS, as_directions, check_directions, cosines, library, traced
+from ratfit.models.directions import LETTERS, as_directions, as_floats, check_directions, cosines, library, traced
 
 
 @dataclass(frozen=True)
@@ -92,12 +92,8 @@ class Model:
         """The value as an array inside the range; a traced one as it is."""
         if traced(value):
             return value
-        _, numpy = library(value)
-        array = numpy.asarray(value)
-        if numpy.issubdtype(array.dtype, numpy.integer):
-            array = array.astype(float)
-        if not numpy.issubdtype(array.dtype, numpy.floating):
-            raise RatfitError(f"{self.name}: {parameter.name} = {value!r} is not a real number or an array of them")
+        array = as_floats(value, f"{self.name}: {parameter.name}")
+        _, numpy = library(array)
         low, high = (array.dtype.type(float(end)) for end in (parameter.low, parameter.high))  # 1/100 of float32 too
         if not bool(numpy.all((array >= low) & (array <= high))):
             raise RatfitError(f"{self.name}: {parameter.name} = {value} is outside [{low:g}, {high:g}]")

@@ -46,13 +46,26 @@ def library(*arrays: Any) -> tuple[str, Any]:
     return "numpy", numpy
 
 
+def as_floats(given: Any, what: str) -> Any:
+    """An array of floats, on its own library. **Fails** with `RatfitError` for what is not made of real numbers."""
+    _, numpy = library(given)
+    try:
+        array = numpy.asarray(given)
+    except ValueError as error:  # NumPy's word for rows of different lengths
+        raise RatfitError(f"{what}: rows of different lengths are no array; make them alike") from error
+    if numpy.issubdtype(array.dtype, numpy.integer):
+        array = array.astype(float)
+    if not numpy.issubdtype(array.dtype, numpy.floating):
+        raise RatfitError(f"{what} is made of {array.dtype}; give real numbers")
+    return array
+
+
 def as_directions(given: Any, what: str) -> Any:
     """An array of directions. **Fails** with `RatfitError` where the last axis has not the three coordinates."""
-    _, numpy = library(given)
-    array = numpy.asarray(given)
+    array = as_floats(given, what)
     if array.ndim == 0 or array.shape[-1] != 3:
         raise RatfitError(f"{what} has the shape {array.shape}: directions are arrays of shape (..., 3), normal +z")
-    return array if numpy.issubdtype(array.dtype, numpy.floating) else array.astype(float)
+    return array
 
 
 def traced(value: Any) -> bool:
@@ -91,6 +104,8 @@ def _where_above(numpy: Any, least: float, values: Any, function: Any, otherwise
 
 def check_directions(array: Any, what: str) -> None:
     """**Fails** with `RatfitError` for a direction that is not of unit length or not above the horizon."""
+    if traced(array):
+        raise RatfitError(f"{what}: strict looks at numbers; leave it out inside jit, grad and vmap")
     _, numpy = library(array)
     length = numpy.sqrt(numpy.sum(array * array, axis=-1))
     if not bool(numpy.all(numpy.abs(length - 1) <= UNIT)):

@@ -11,7 +11,7 @@ import math
 from typing import Any
 
 from ratfit._parse import RatfitError
-from ratfit.models.directions import library
+from ratfit.models.directions import as_floats, library
 
 FAINTEST = 1e-30
 """The least light that may be shown as white; float32 still holds it with all its digits."""
@@ -19,7 +19,8 @@ FAINTEST = 1e-30
 
 def clamp(light: Any) -> Any:
     """0 below 0, 1 above 1, the light itself between (polimi2024, Color range)."""
-    numpy, light = _floating(light)
+    light = as_floats(light, "light")
+    _, numpy = library(light)
     return numpy.where(light > 1, 1, numpy.where(light < 0, 0, light)).astype(light.dtype)
 
 
@@ -35,13 +36,8 @@ def reinhard_white(light: Any, white: float) -> Any:
     """
     if not white >= FAINTEST:
         raise RatfitError(f"white = {white}: give the light that is to be shown as white, {FAINTEST} or more")
-    numpy, light = _floating(light)
+    light = as_floats(light, "light")
+    _, numpy = library(light)
     held = numpy.where((light < 0) | (light >= white), 0, light).astype(light.dtype)
     share = held / white
     return numpy.where(light >= white, 1, (held + share * share) / (1 + held)).astype(light.dtype)
-
-
-def _floating(light: Any) -> tuple[Any, Any]:
-    _, numpy = library(light)
-    array = numpy.asarray(light)
-    return numpy, array if numpy.issubdtype(array.dtype, numpy.floating) else array.astype(float)

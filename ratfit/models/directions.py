@@ -27,7 +27,10 @@ R_DOT_V = 2 * V * V_PRIME - V_DOT_L
 """The cosine of the angle between the view and the mirror image of the light, R = 2 (N.L) N - L; -1 to 1."""
 
 HORIZON = sp.Rational(1, 10**14)
-"""Cosines below this one count as this one where a reflectance divides by them: no float overflows, nor a gradient."""
+"""Cosines below this one count as this one where a reflectance divides by them, so that float32 does not overflow.
+
+Gradients in float32 are finite from a cosine of 1e-5 on; nearer to the horizon they may be too great for it.
+"""
 
 SHORT = 1e-15
 """A vector no longer than this, left over where two unit ones cancel, is their rounding and has no direction."""

@@ -31,6 +31,7 @@ _LATER = {
     "BACKENDS": "ratfit._speed",
     "DEFINITIONS": "ratfit._error",
     "Watch": "ratfit._error",
+    "lower": "ratfit._lower",
     "measure_error": "ratfit._error",
     "measure_speed": "ratfit._speed",
     "peers": "ratfit.baselines",

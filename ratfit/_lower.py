@@ -230,6 +230,9 @@ class _Tape:
         return value
 
     def _function(self, node: Any) -> int:
+        if isinstance(node, sp.ITE):  # what sympy makes of a condition on a piece
+            condition, chosen, other = node.args
+            return self.place(sp.Or(sp.And(condition, chosen), sp.And(sp.Not(condition), other)))
         if node.func in _RECIPROCALS:
             return self._step("divide", self.place(sp.S.One), self.place(_RECIPROCALS[node.func](*node.args)))
         if isinstance(node, Lookup):

@@ -29,6 +29,7 @@ FUNCTIONS = [
     sp.Min(x, sp.Rational(1, 2), 1 - x), sp.Max(x, 1 - x), sp.Heaviside(x - sp.Rational(1, 3)),
     sp.Piecewise((x, x < sp.Rational(1, 3)), (x**2, (x >= sp.Rational(1, 3)) & (x < sp.Rational(2, 3))), (7, True)),
     sp.Piecewise((1, (x < sp.Rational(1, 4)) | (x > sp.Rational(3, 4))), (2, True)),
+    sp.Piecewise((1, sp.Piecewise((1 - x, x > sp.Rational(1, 2)), (x, True)) > sp.Rational(1, 4)), (2, True)),
     sp.Piecewise((1, sp.Not(sp.Eq(x, 2))), (2, True)), sp.Piecewise((1, sp.Ne(x, 2)), (2, True)),
     x * (x - sp.pi**2 / 4) / ((sp.pi - sp.pi**2 / 4) * x - sp.pi**2 / 4),
     sp.sqrt(3) * x * (1 - x) ** 5 / (sp.sqrt(2) * (x**2 + 1) ** 2 * (3 - x)),

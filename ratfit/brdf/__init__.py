@@ -6,3 +6,4 @@ from ratfit.brdf import masking as masking
 from ratfit.brdf import metals as metals
 from ratfit.brdf import roughness as roughness
 from ratfit.brdf import sampling as sampling
+from ratfit.brdf.interior import interior as interior

@@ -9,7 +9,7 @@ A roughness below `SMOOTH` counts as 0, a Dirac: infinite in its direction, 0 in
 whose exponent is beyond `UNDERFLOW` is 0. On arrays in float64 the values are right to 4 units of 2^-52, those with two
 roughnesses to 8, and to 3 more for every unit of a Gaussian's exponent, tan^2/alpha^2, or of `blinn`'s logarithm.
 Gradients are finite where there is no Dirac (in float32 for roughness from 1e-6 on). What roughness means in each:
-`ratfit.brdf.roughness`. For calculus take the `ratfit.brdf.interior` of a formula.
+`ratfit.brdf.roughness`. For calculus take the `interior` of a formula.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from collections.abc import Callable
 from sympy import Eq, Expr, Max, Min, Piecewise, Rational, S, elliptic_k, exp, log, oo, pi, sqrt
 from sympy.core.relational import Relational
 
-from ratfit.brdf._instead import instead
+from ratfit.brdf._limits import instead
 
 SMOOTH = Rational(1, 10**15)  # its square is a normal number in float32
 UNDERFLOW = 700  # exp(-700) is the last power of ten or so that float64 has in full

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from sympy import Expr, Integer, Max, Min, Or, Piecewise, Rational, erf, erfc, exp, oo, pi, sqrt
 from sympy.logic.boolalg import Boolean
 
-from ratfit.brdf._instead import instead
+from ratfit.brdf._limits import instead
 
 _FAR = Integer(30)
 """a is held below this: from here on 1 - G and erfc(a) are less than exp(-900), which no double tells from 0."""

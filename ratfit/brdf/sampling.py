@@ -10,7 +10,7 @@ and then the cosine for the alpha at this azimuth (`roughness.alpha_at`); schlic
 
 from sympy import Expr, Min, Piecewise, S, atan2, cos, elliptic_f, elliptic_k, exp, log, pi, sin, sinh, sqrt
 
-from ratfit.brdf._instead import instead
+from ratfit.brdf._limits import instead
 from ratfit.brdf.distribution import MIRROR, SMOOTH
 
 

@@ -72,7 +72,10 @@ OREN_NAYAR = Model(
     (ALBEDO, SIGMA),
     "orennayar1994; polimi2024, Oren-Nayar",
     {"albedo": 0.8, "sigma": 0.5},
-    note="The short model, of single reflections. It has no bound as both directions come to the horizon together.",
+    note=(
+        "The short model, of single reflections. It has no bound as both directions come to the horizon together, and "
+        "at grazing view it reflects albedo (A + B/2), more than it gets if the albedo is 1 and sigma below 0.326."
+    ),
 )
 
 OREN_NAYAR_TABLED = Model(

@@ -54,6 +54,10 @@ class AtLeast:
     bound: float
 
 
+ZERO = Rounded(0, 2e-5)
+"""That two things are the same: no difference, but for what quadrature and rounding leave."""
+
+
 def agrees(found: Any, claimed: Any) -> bool:
     """Whether what was found is what was claimed; None, for what has no value, agrees with nothing."""
     if found is None:
@@ -74,7 +78,7 @@ def agrees(found: Any, claimed: Any) -> bool:
         case Mapping():
             return bool(found == claimed)
         case sp.Basic():
-            return same(sp.sympify(found, strict=True), claimed)
+            return same(found + sp.S.Zero, claimed)  # a float becomes an expression
     return abs(float(found) - float(claimed)) <= NUMBER * (1 + abs(float(claimed)))
 
 
@@ -124,7 +128,7 @@ def shown(value: Any) -> Any:
         case AtLeast(bound):
             return f"at least {bound:g}"
         case tuple():
-            return ", ".join(str(shown(each)) for each in value)
+            return ", ".join(_in_a_row(shown(each)) for each in value)
         case Mapping():
             return ", ".join(f"{count} {name}" for name, count in value.items() if count)
         case sp.Basic():
@@ -133,6 +137,10 @@ def shown(value: Any) -> Any:
     if number - number != 0:
         return None
     return 0.0 if abs(number) < NOTHING else float(f"{number:.6g}")
+
+
+def _in_a_row(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def unguarded(formula: sp.Expr) -> sp.Expr:

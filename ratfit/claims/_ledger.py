@@ -21,6 +21,8 @@ from ratfit.claims import (
 from ratfit.claims._claim import DOCUMENTS, Claim
 
 _THEMES = (
+    course,
+    smoothie,
     background,
     method,
     fresnel,
@@ -29,8 +31,6 @@ _THEMES = (
     published_errors,
     schlick_model,
     sampling,
-    course,
-    smoothie,
     smoothie_fresnel,
 )
 
@@ -57,5 +57,6 @@ def _named(word: str, ledger: Sequence[Claim]) -> Iterator[Claim]:
     found = [c for c in ledger if c.id.casefold() == wanted or c.id.casefold().startswith(f"{wanted}-")]
     if not found:
         known = [*DOCUMENTS, *(claim.id for claim in ledger)]
-        raise RatfitError(f"no claim {word!r}{nearest(word, known)}; `ratfit claims` lists all, PM those of one source")
+        remedy = nearest(word, known) or "; `ratfit claims` lists all, `ratfit claims PM` those of one source"
+        raise RatfitError(f"no claim {word!r}{remedy}")
     yield from found

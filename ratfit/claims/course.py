@@ -131,7 +131,7 @@ def operations(formula: sp.Expr) -> float:
     """The operations of a formula in additions, each shared part once, as the cost model weighs them."""
     from ratfit._speed.cost_model import weight
 
-    return weight(tape(formula, sorted(formula.free_symbols, key=str)), "float32")
+    return weight(tape(formula, tuple(sorted(formula.free_symbols, key=str))), "float32")
 
 
 def cosine_of_phong() -> sp.Expr:

@@ -9,7 +9,7 @@ import sympy as sp
 
 from ratfit._target import parameter
 from ratfit.brdf import distribution, masking
-from ratfit.claims._agreement import AtLeast, AtMost
+from ratfit.claims._agreement import ZERO, AtLeast, AtMost
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import hemisphere, over_pairs, turned
 from ratfit.claims._numbers import largest, midpoints, values
@@ -323,7 +323,7 @@ CLAIMS = (
         "DP-G1-ggx",
         "G term",
         "2/(1 + sqrt(1 + alpha^2 tan^2)) is the G1 of GGX",
-        AtMost(1e-5),
+        ZERO,
         lambda: max(off_from_area(masking.ggx, distribution.ggx, alpha) for alpha in (0.5, 1.0)),
         how="difference to the share that makes the visible facets add up to v, by quadrature",
     ),
@@ -358,7 +358,7 @@ CLAIMS = (
         "PM-G",
         "Cook-Torrance, geometric term",
         "the geometric term of the slides is that of Cook and Torrance: min(1, 2 t v/u, 2 t v'/u)",
-        AtMost(1e-12),
+        ZERO,
         lambda: over_pairs(abs(masking.torrance_sparrow_as_printed(T, U, V, V_PRIME) - TORRANCE)).max(),
         how="greatest difference over pairs of directions; u is the same cosine for view and light",
     ),
@@ -382,7 +382,7 @@ CLAIMS = (
         "SM-G",
         "Microfacet Smoothie",
         "4 (N.L)(N.V)/(h.h) cancels the denominator of the microfacet formula: what is left is 1/(h.h)",
-        AtMost(1e-9),
+        ZERO,
         lambda: abs(over_pairs(masking.kelemen(U, V, V_PRIME) / (V * V_PRIME) * U**2) - 1).max(),
         how="greatest relative difference over pairs of directions; h.h = 4 u^2",
     ),

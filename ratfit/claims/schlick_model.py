@@ -9,7 +9,7 @@ import sympy as sp
 
 from ratfit._target import parameter
 from ratfit.brdf import distribution, fresnel, masking, roughness
-from ratfit.claims._agreement import AtLeast, AtMost, same
+from ratfit.claims._agreement import ZERO, AtLeast, AtMost, same
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo
 from ratfit.claims._numbers import integral, values
@@ -144,6 +144,8 @@ def root_at_double_angle(angle: Any) -> Any:
 
 HALF = sp.Rational(1, 2)
 
+ROUGHNESSES = tuple(sp.Rational(k, 20) for k in range(21))
+
 CLAIMS = (
     Claim(
         "S-5-p",
@@ -221,7 +223,7 @@ CLAIMS = (
         lambda: mean_azimuth(A_PRINTED, 0.2),
         how="at p = 1/5",
         instead=Reading(
-            "its square p/(p^2 - p^2 w^2 + w^2) keeps it for every p; the found mean is that of the printed A at p = 1/5",
+            "its square p/(p^2 - p^2 w^2 + w^2) keeps it for every p; the found mean is the printed A's at p = 1/5",
             lambda: all(abs(mean_azimuth(A, p) - 1) < 1e-9 for p in (0.01, 0.05, 0.2, 0.5, 1.0)),
         ),
     ),
@@ -229,7 +231,7 @@ CLAIMS = (
         "S-28-ellipse-Z",
         "Eq. 28",
         "Z is the polar equation of an ellipse with the pole in a focus",
-        AtMost(1e-9),
+        ZERO,
         lambda: off_conic(zenith_at),
         how="distance from every conic at r = 1/5",
         instead=Reading(
@@ -241,7 +243,7 @@ CLAIMS = (
         "S-28-ellipse-A",
         "Eq. 28",
         "A is the polar equation of an ellipse with the pole in its middle",
-        AtMost(1e-9),
+        ZERO,
         lambda: off_conic(azimuth_at),
         how="distance from every conic at p = 1/5; so it is as printed, with the root that breaks Eq. 27",
     ),
@@ -316,7 +318,7 @@ CLAIMS = (
         "S-30-reciprocal",
         "Section 5",
         "the model keeps Helmholtz's reciprocity",
-        AtMost(1e-12),
+        ZERO,
         lambda: asymmetry(EQ_30, r=0.3, p=0.5),
         how="greatest relative change of Eq. 30 when view and light change places",
     ),
@@ -369,5 +371,3 @@ CLAIMS = (
         readings=(Reading("with Eq. 32 counted once, whichever B stands in it", lambda: variants(directional=3)),),
     ),
 )
-
-ROUGHNESSES = tuple(sp.Rational(k, 20) for k in range(21))

@@ -54,6 +54,9 @@ def in_words(value: Any) -> str:
     if value is None:
         return "no value"
     text = f"{value:.4g}" if isinstance(value, float) else str(value)
+    laws = set(text.split(", "))
+    if laws in ({"True"}, {"False"}):  # several laws of one kind
+        return in_words(laws == {"True"})
     return text.replace("True", "holds").replace("False", "does not hold")
 
 
@@ -74,9 +77,8 @@ def claims_markdown(decisions: Sequence[Decision]) -> str:
     return "\n".join([about, *(_section(document, decisions) for document in DOCUMENTS)]).rstrip("\n")
 
 
-_EQUAL = """Formulas are taken for equal when they agree to 30 digits at seven places of all their symbols; a number agrees
-when
-it rounds to what is printed, or to nine digits where a formula or an integer is claimed.
+_EQUAL = """Formulas are taken for equal when they agree to 30 digits at seven places of all their symbols; a number
+agrees when it rounds to what is printed, or to nine digits where a formula or an integer is claimed.
 """
 
 

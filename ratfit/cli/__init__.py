@@ -12,6 +12,7 @@ from ratfit._parse import RatfitError
 from ratfit.cli.claims import claims
 from ratfit.cli.derive import derive
 from ratfit.cli.measure import bench, paper, report
+from ratfit.cli.model import check_model
 from ratfit.cli.problems import check, gallery, init
 from ratfit.cli.study import study
 
@@ -58,5 +59,5 @@ def cli(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for _command in (derive, study, bench, paper, report, gallery, init, check, claims):
+for _command in (derive, study, bench, paper, report, gallery, init, check, claims, check_model):
     cli.add_command(_command)

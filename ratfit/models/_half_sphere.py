@@ -1,7 +1,7 @@
-"""The light above the horizon in panels that grow fine wherever a lobe may be narrow: by its half vectors, or by itself.
+"""The light above the horizon in panels that grow fine where a lobe may be narrow: by its half vectors, or by itself.
 
-A half vector has a polar angle theta about the normal and an azimuth phi counted from the view's. The light is above the
-horizon for theta below `horizon`, a smooth boundary, so every integral over the light becomes one over a rectangle.
+A half vector has a polar angle theta about the normal and an azimuth phi counted from the view's. The light is above
+the horizon for theta below `horizon`, a smooth boundary, so an integral over the light becomes one over a rectangle.
 Panels are graded: toward theta = 0, where lobes of facets have their peak; toward the horizon of the light; and toward
 the azimuths across and along the view and along the axes of the surface, where boundary and elliptical lobes turn fast.
 By the light's own angles, what depends on them alone has its kinks on the edges of panels (a threshold of the azimuth,
@@ -65,7 +65,7 @@ def polar_panels(edge: Any) -> tuple[Panel, Panel]:
 
 
 def horizon(cosine: Any, phi: Any) -> Any:
-    """The theta at which the light is at the horizon, where 2 (V.H) (N.H) = N.V: half the angle of (-sin cos(phi), v)."""
+    """The theta at which the light is at the horizon, where 2 (V.H) (N.H) = N.V."""
     return np.arctan2(cosine, -np.sqrt((1 - cosine) * (1 + cosine)) * np.cos(phi)) / 2
 
 

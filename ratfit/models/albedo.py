@@ -66,7 +66,8 @@ def albedo(
     unfinished = errors > tolerance * np.maximum(1, found)
     other, other_errors = _doubled(ask, light_nodes, cosines[unfinished])
     is_better = np.zeros(found.shape, bool)
-    is_better[unfinished] = other_errors < errors[unfinished]
+    agree = np.abs(other - found[unfinished]) <= errors[unfinished] + tolerance  # nodes may miss a lobe twice
+    is_better[unfinished] = agree & (other_errors < errors[unfinished])
     found[is_better], errors[is_better] = other[is_better[unfinished]], other_errors[is_better[unfinished]]
     for nodes, mine in ((facet_nodes, ~is_better), (light_nodes, is_better)):
         left = mine & (errors > tolerance * np.maximum(1, found))
@@ -95,8 +96,9 @@ def monte_carlo_albedo(
     means, deviations = [], []
     for view in views(cosines, azimuth)[:, None, :]:
         weights = sampler.weight(model, view, sampler.sample(view, random.random((samples, 2)), **known), **known)
-        means.append(weights.mean())
-        deviations.append(weights.std(ddof=1) / math.sqrt(samples))
+        with np.errstate(over="ignore", invalid="ignore"):  # of a model that is infinite somewhere
+            means.append(weights.mean())
+            deviations.append(weights.std(ddof=1) / math.sqrt(samples))
     return Albedo(cosines, np.array(means) + _coherent(model, cosines, known), np.array(deviations))
 
 

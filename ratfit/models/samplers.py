@@ -23,7 +23,7 @@ ALPHA = parameter("alpha", "1/10000", 1)
 EXPONENT = parameter("exponent", 0, 1_000_000)
 ROUGHNESS = parameter("roughness", "1/100", 1)
 M, N = (parameter(name, "1/100", 1) for name in ("m", "n"))
-R, P = parameter("r", "1/1000000", 1), parameter("p", "1/100", 1)
+R, P = parameter("r", "1/1000000", 1), parameter("p", "1/1000", 1)
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Blend:
     parts: Sequence[tuple[Sampler, Mapping[str, float]]] = field(default_factory=tuple)
 
     def sample(self, view: Any, pair: Any, **values: Any) -> Any:
-        """As `Sampler.sample`; which part draws is taken from the first number, and what is left of it is used again."""
+        """As `Sampler.sample`. The first number says which part draws, and what is left of it is used again."""
         view, pair = as_directions(view, "view"), _pairs(pair)
         _, numpy = library(view, pair)
         scaled = pair[..., 0] * len(self.parts)
@@ -95,7 +95,7 @@ class Blend:
         return sum(densities) / len(self.parts)
 
     def weight(self, model: Model, view: Any, light: Any, **values: Any) -> Any:
-        """The reflectance times the cosine to the light over the density; its mean is the albedo. 0 below the horizon."""
+        """As the function `weight`; the mean of the weights is the albedo."""
         return weight(self, model, view, light, **values)
 
 
@@ -114,8 +114,12 @@ def weight(sampler: Sampler | Blend, model: Model, view: Any, light: Any, **valu
 
 
 def _own(sampler: Sampler, stated: Mapping[str, float], values: Mapping[str, Any]) -> dict[str, Any]:
-    names = {p.name for p in sampler.pdf.parameters}
-    return {**{name: value for name, value in values.items() if name in names}, **stated}
+    """A part's own parameters, within its range: a lobe beyond what it can draw is drawn as the last one it can."""
+    held = {}
+    for p in (p for p in sampler.pdf.parameters if p.name in values):
+        _, numpy = library(values[p.name])
+        held[p.name] = numpy.clip(values[p.name], float(p.low), float(p.high))
+    return {**held, **stated}
 
 
 def _pairs(given: Any) -> Any:
@@ -165,7 +169,9 @@ def _printed_azimuth(b: sp.Expr, p: sp.Expr) -> sp.Expr:
 
 
 ROUND = sampling.uniform_azimuth(B)
-ELLIPSE = sampling.full_azimuth(B, M / N)
+ELLIPSE = sp.atan2(sp.sin(2 * sp.pi * B), M / N * sp.cos(2 * sp.pi * B))
+"""`sampling.full_azimuth` without its limit, which m does not come near: its cosine goes into a condition."""
+
 WIDE = roughness.alpha_from_perceived(ROUGHNESS)
 
 COSINE = Sampler(

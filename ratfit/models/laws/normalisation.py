@@ -1,0 +1,54 @@
+"""Normalisation: the projected areas of all facets add up to that of the surface."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ratfit._lower import lower
+from ratfit.models._half_sphere import azimuth_panels, polar_panels, unit_gauss
+from ratfit.models._model import Model
+from ratfit.models.directions import LETTERS
+from ratfit.models.laws.law import NOT_APPLICABLE, Law, verdict
+from ratfit.models.laws.settings import Setting, settings
+
+SETTINGS = 64
+ORDER = 12
+BOUND = 1e-4
+
+
+def normalisation(model: Model, fixed: Setting, seed: int) -> Law:
+    """How far the integral of D(H) N.H over the hemisphere is from 1, at the worst setting."""
+    measure = "greatest distance from 1 of the integral of D(H) N.H over the hemisphere"
+    if model.facets is None:
+        return Law("normalisation of D", NOT_APPLICABLE, measure, remark="the model states no distribution of facets")
+    letters = set(LETTERS)
+    mine = {s.name for s in model.facets.free_symbols - letters}
+    worst, slack, place = 0.0, 0.0, {}
+    for setting in settings(model, fixed, SETTINGS, seed):
+        coarse, fine = (_integral(model, setting, order) for order in (ORDER, 2 * ORDER))
+        distance = abs(fine - 1) if math.isfinite(fine) else math.inf
+        if distance > worst:
+            worst, slack = distance, abs(fine - coarse)
+            place = {name: value for name, value in setting.items() if name in mine}
+    remark = f"by quadrature, to {slack:.1g}" if slack > BOUND else ""
+    return Law("normalisation of D", verdict(worst <= BOUND + slack), measure, worst, BOUND, place, remark)
+
+
+def _integral(model: Model, setting: Setting, order: int) -> float:
+    function = lower(model.facets, [*LETTERS, *model.parameters])
+    values = [setting[p.name] for p in model.parameters]
+    y_phi, w_phi = unit_gauss(order)
+    total = 0.0
+    for around in azimuth_panels(0.0, whole=False):
+        w = np.abs(np.cos(around.place(y_phi)))[:, None]
+        across = 2 * (w_phi * around.slope(y_phi))[:, None]
+        for panel in polar_panels(math.pi / 2):
+            y, weight = unit_gauss(4 * order)
+            theta = panel.place(y)
+            t: Any = np.cos(theta)
+            found = function(t, 1.0, 1.0, 1.0, w, *values)
+            total += float(np.sum(found * t * np.sin(theta) * weight * panel.slope(y) * across))
+    return total

@@ -95,6 +95,12 @@ def azimuth_as_printed(w: sp.Expr, p: sp.Expr) -> sp.Expr:
     return sp.sqrt(azimuth(w, p))
 
 
+def distributed(layer: Layer, *, printed: bool = False) -> sp.Expr:
+    """Z A/pi, the distribution of the normals of the facets per steradian."""
+    a = azimuth_as_printed if printed else azimuth
+    return zenith(T, sp.Max(layer.r, NEARLY_MIRROR)) * a(W, layer.p) / sp.pi
+
+
 def visible(v: sp.Expr, k: sp.Expr) -> sp.Expr:
     """v/G(v) = v + k (1 - v), of the masking of Eq. 31, k = r."""
     return v + k * (1 - v)

@@ -22,7 +22,7 @@ from collections.abc import Mapping
 import sympy as sp
 
 from ratfit.models._model import Model
-from ratfit.models._schlick import Layer, azimuth, both_visible, layer, mirror, weighted_zenith, weights
+from ratfit.models._schlick import Layer, azimuth, both_visible, distributed, layer, mirror, weighted_zenith, weights
 from ratfit.models.directions import V_PRIME, T, U, V, W
 from ratfit.models.schlick import DEFAULTS, SPECTRAL
 
@@ -110,6 +110,8 @@ def conserving(spectral: str, name: str) -> Model:
         f"schlick1994, Eqs. 22, 28, 32, 33 and {where[4:]}; kulla2017",
         {p.name: value for p, value in zip(one, DEFAULTS[0], strict=True)},
         s(V, one.c) * mirror(one.r),
+        facets=distributed(one),
+        sampler="schlick",
         note="The albedo is at most 1, C = 1 included; the part of it that C = 1, p = 1 lose is 1.8 % at most.",
     )
 

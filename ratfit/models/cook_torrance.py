@@ -68,6 +68,9 @@ DISTRIBUTIONS: Mapping[str, Factor] = {
     "phong": Factor(lambda: distribution.phong(T, EXPONENT), "microfacet, D term"),
     "blinn": Factor(lambda: distribution.blinn(T, ALPHA), "polimi2024, D"),
 }
+SAMPLED_AS = {"beckmann-rational": "ggx"}
+"""The sampler of a distribution that has none of its own name."""
+
 FRESNELS: Mapping[str, Factor] = {
     "conductor": Factor(lambda: fresnel.conductor(U, ETA, KAPPA), "schlick1994, Eq. 13"),
     "dielectric": Factor(lambda: fresnel.dielectric(U, ETA), "microfacet, F term"),
@@ -147,6 +150,8 @@ def cook_torrance(
         "; ".join((how.source, d.source, f.source, g.source)),
         {p.name: DEFAULTS[p] for p in parameters_of(reflectance)},
         note=how.note,
+        facets=d.formula,
+        sampler=SAMPLED_AS.get(distribution, distribution),
     )
 
 

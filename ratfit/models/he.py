@@ -54,6 +54,8 @@ def he(weight: sp.Expr, name: str, title: str) -> Model:
         * fresnel.conductor(V, ETA, KAPPA)
         * masking.separable(masking.smith, V, V, AXIS)
         * attenuation(V, V, SIGMA),
+        facets=DISTRIBUTIONS["beckmann"].formula,
+        sampler="beckmann",
     )
 
 

@@ -19,7 +19,7 @@ import sympy as sp
 from ratfit._parse import RatfitError, nearest
 from ratfit.brdf import fresnel
 from ratfit.models._model import Model
-from ratfit.models._schlick import DIRECTIONAL, layer
+from ratfit.models._schlick import DIRECTIONAL, distributed, layer
 from ratfit.models.directions import U, V
 
 DEFAULTS = ((0.9, 0.2, 1.0), (0.4, 0.9, 1.0))
@@ -68,6 +68,8 @@ def schlick(
         f"schlick1994, Eq. 22, {where}, {factor.source}",
         dict(zip([p.name for p in parameters], DEFAULTS[0] + DEFAULTS[1], strict=False)),
         layered([s(V, each.c) for each in materials], [factor.mirror(each.r) for each in materials]),
+        facets=distributed(materials[0], printed=printed) if layers == 1 else None,
+        sampler="schlick",
     )
 
 

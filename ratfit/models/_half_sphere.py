@@ -10,6 +10,7 @@ the greater of two angles), but lobes are not followed.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -137,10 +138,14 @@ def _joined(parts: Sequence[tuple[Any, Any]]) -> Nodes:
     return Nodes(light, np.concatenate([weight.reshape(len(weight), -1) for _, weight in parts], axis=1))
 
 
+@functools.cache
 def unit_gauss(order: int) -> tuple[Any, Any]:
-    """Gauss's nodes and weights on [0, 1]."""
+    """Gauss's nodes and weights on [0, 1], not to be written to: they are kept."""
     nodes, weights = np.polynomial.legendre.leggauss(order)
-    return (nodes + 1) / 2, weights / 2
+    made = (nodes + 1) / 2, weights / 2
+    for each in made:
+        each.flags.writeable = False
+    return made
 
 
 def coordinates(view: Any, light: Any, azimuth: float) -> tuple[Any, Any, Any]:

@@ -118,7 +118,7 @@ class _Question:
     model: Model
     azimuth: float
     whole: bool
-    known: dict[str, float]
+    known: dict[str, Any]
 
     def integral(self, nodes: _Rule, cosines: Any, order: int) -> Any:
         """The albedos at some cosines, as many at once as a cache holds."""
@@ -140,7 +140,7 @@ def _doubled(ask: _Question, nodes: _Rule, cosines: Any) -> tuple[Any, Any]:
         return fine, np.abs(fine - coarse)
 
 
-def _coherent(model: Model, cosines: Any, known: dict[str, float]) -> Any:
+def _coherent(model: Model, cosines: Any, known: dict[str, Any]) -> Any:
     """The mirror's share, its half vector the normal."""
     one = np.ones_like(cosines)
     settings = [known[p.name] for p in model.parameters]

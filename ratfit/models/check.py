@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from ratfit.models._model import Model
 from ratfit.models.albedo import Albedo, albedo, angles, monte_carlo_albedo
@@ -47,7 +48,7 @@ def check(model: Model, fixed: Mapping[str, float] | None = None, *, seed: int =
     **Fails** with `RatfitError` for a parameter that is unknown or outside its range.
     """
     fixed = dict(fixed or {})
-    setting = {name: float(value) for name, value in model.settings(fixed).items()}
+    setting: dict[str, Any] = {name: float(value) for name, value in model.settings(fixed).items()}
     shown = albedo(model, **setting)
     drawn = monte_carlo_albedo(model, angles()[::EVERY], seed=seed, **setting)
     at_samples = Albedo(*(each[::EVERY] for each in (shown.cosines, shown.values, shown.errors)))

@@ -34,10 +34,10 @@ def check_text(check: Check) -> str:
     ]
     lines += _wrapped("parameters", ", ".join(ranges)) if ranges else []
     head = ["law", "verdict", "found", "bound", "what was measured"]
-    table = [head, *([law.name, MARKS[law.verdict], *_numbers(law), law.measure] for law in check.laws)]
+    table = [head, *([law.name, MARKS[law.verdict], *_numbers(law), _measured(law)] for law in check.laws)]
     lines += ["", *(f"  {line}" for line in aligned(table))]
-    for law in check.laws:
-        lines += _about(law)
+    about = [line for law in check.laws for line in _about(law)]
+    lines += ["", *about] if about else []
     lines += ["", *(f"  {line}" for line in _albedo_lines(check))]
     return "\n".join(lines)
 
@@ -91,12 +91,16 @@ def _numbers(law: Law) -> list[str]:
     return ["" if number is None else f"{number:.4g}" for number in (law.found, law.bound)]
 
 
+def _measured(law: Law) -> str:
+    return law.remark if law.verdict == NOT_APPLICABLE else law.measure
+
+
 def _about(law: Law) -> list[str]:
     """Where a law fails, and what else is to be said of it."""
-    said = [law.remark] if law.remark and law.verdict != HOLDS else []
-    if law.place and law.verdict in (FAILS, UNDECIDED):
-        said.insert(0, f"at {_place(law.place)}")
-    return ["", *_wrapped(law.name, "; ".join(said), 20)] if said else []
+    if law.verdict not in (FAILS, UNDECIDED):
+        return []
+    said = [f"at {_place(law.place)}"] * bool(law.place) + [law.remark] * bool(law.remark)
+    return _wrapped(law.name, "; ".join(said), 22) if said else []
 
 
 def _place(place: Mapping[str, float]) -> str:

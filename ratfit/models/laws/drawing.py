@@ -56,7 +56,7 @@ def chi_square(
     toward the normal of the half vectors, so lobes of every width fill many of them; one more holds the light below the
     horizon.
     """
-    from scipy.stats import chi2
+    from scipy.special import chdtrc
 
     view = views([cosine], azimuth)[0]
     random = np.random.default_rng(seed)
@@ -69,7 +69,7 @@ def chi_square(
         observed, wanted = (np.append(each[:-2], each[-2:].sum()) for each in (observed, wanted))
     statistic = float(np.sum((observed - wanted) ** 2 / wanted))
     freedom = len(wanted) - 1
-    return ChiSquare(statistic, freedom, float(chi2.sf(statistic, freedom)))
+    return ChiSquare(statistic, freedom, float(chdtrc(freedom, statistic)))
 
 
 def sampling(model: Model, setting: Setting, seed: int) -> Law:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ratfit.models._model import Model
@@ -15,10 +17,11 @@ PAIRS, SETTINGS = 2000, 64
 def limits(model: Model, fixed: Setting, seed: int) -> Law:
     """How many values are nan, infinite, negative, or not 0 below the horizon, in float32 and float64."""
     view, light = (np.concatenate(both) for both in zip(limit_pairs(), random_pairs(PAIRS, seed, 1e-12), strict=True))
-    count, kinds, place = 0, set(), {}
+    count, kinds = 0, set()
+    place: dict[str, float] = {}
     for setting in settings(model, fixed, SETTINGS, seed):
         for dtype in (np.float32, np.float64):
-            typed = view.astype(dtype), light.astype(dtype)
+            typed: list[Any] = [view.astype(dtype), light.astype(dtype)]
             value = model(*typed, **setting)
             hidden = (typed[0][:, 2] <= 0) | (typed[1][:, 2] <= 0)
             wrong = {

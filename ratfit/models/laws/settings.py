@@ -11,7 +11,7 @@ import numpy as np
 from ratfit._target import Parameter
 from ratfit.models._model import Model
 
-Setting = Mapping[str, float]
+Setting = Mapping[str, Any]
 
 CORNERS = 32
 """All corners of the ranges are taken where there are no more than that."""
@@ -24,7 +24,7 @@ def settings(model: Model, fixed: Setting, count: int, seed: int) -> list[Settin
     """
     default = {name: float(value) for name, value in model.settings(fixed).items()}
     free = [p for p in model.parameters if p.name not in fixed]
-    found = [default]
+    found: list[Setting] = [default]
     found += [{**default, p.name: end} for p in free for end in ends(p)]
     if 2 ** len(free) <= CORNERS:
         corners = itertools.product(*map(ends, free))

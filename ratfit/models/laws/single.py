@@ -22,7 +22,9 @@ def single(model: Model, fixed: Setting, seed: int) -> Law:
     view, light = (each.astype(np.float32) for each in random_pairs(PAIRS, seed))
     worst, place, beyond, count = 0.0, {}, 0, 0
     for setting in settings(model, fixed, SETTINGS, seed):
-        held = {name: float(np.clip(float(np.float32(value)), *_ends(model, name))) for name, value in setting.items()}
+        held: Setting = {
+            name: float(np.clip(float(np.float32(value)), *_ends(model, name))) for name, value in setting.items()
+        }
         exact = model(view.astype(float), light.astype(float), **held)
         found = model(view, light, **held).astype(float)
         with np.errstate(invalid="ignore"):

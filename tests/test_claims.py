@@ -31,10 +31,11 @@ from ratfit.claims import (
 from ratfit.claims import fresnel as fresnel_claims
 from ratfit.claims._agreement import AtLeast, AtMost, Near, Rounded, agrees, same, shown, unguarded
 from ratfit.claims._directions import albedo
+from ratfit.claims._models import LETTERS, V_PRIME, T, U, V
 from ratfit.claims.distributions import ALPHA, farthest_total, is_gaussian
 from ratfit.claims.masking import M, off_from_area, slope_jump, turned_by
 from ratfit.cli import main
-from ratfit.models.directions import V_PRIME, T, U, V
+from ratfit.models import directions
 from ratfit.report.claims import claims_markdown, claims_text, summary
 
 PAGE = Path(__file__).parent.parent / "docs" / "claims.md"
@@ -203,6 +204,10 @@ def test_agreement(found, claimed, verdict):
     assert agrees(found, claimed) is verdict
 
 
+def test_the_letters_are_those_of_the_models():
+    assert LETTERS == directions.LETTERS
+
+
 def test_formulas_without_a_real_value_are_not_the_same():
     assert not same(sp.sqrt(-1 - U), sp.sqrt(-1 - U))
     assert not same(sp.log(U - 2), U)
@@ -240,7 +245,7 @@ def test_readings_that_measure_wait_until_they_are_asked_for():
 def test_speeds_are_undecided_until_measured():
     for claim in claims():
         if claim.measured:
-            assert decide(claim).verdict == "undecided" and claim.claimed and "--measure" in claim.open
+            assert decide(claim).verdict == "undecided" and "--measure" in claim.open
 
 
 def test_words_select():
@@ -337,7 +342,7 @@ def test_what_was_found_would_be_reproduced_and_what_was_not_would_not(name):
     if decision.verdict == "wrong" and decision.found is not None:
         assert decide(replace(claim, claimed=decision.found)).verdict == "reproduced"
     if decision.verdict == "reproduced":
-        assert decide(replace(claim, claimed=something_else(claim.claimed, decision.found))).verdict != "reproduced"
+        assert decide(replace(claim, claimed=something_else(claim.value, decision.found))).verdict != "reproduced"
 
 
 def something_else(claimed, found):

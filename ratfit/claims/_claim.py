@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from types import FunctionType
 from typing import Any
 
 from ratfit.claims._agreement import agrees, shown
@@ -41,10 +43,11 @@ class Claim:
     """A statement of a source, what it says is so, and the computations that decide it.
 
     `claim` is the statement in our own words, `claimed` the value that it gives: a number or formula, a `Rounded`,
-    `AtMost` or `AtLeast`, counts, or True for a law. `found` computes the same as the statement says it; None where
-    the statement leaves open what is meant, which `open` then says. `how` says in words how it is computed.
-    `readings` are tried in their order where `found` does not agree; `instead` is what is right where no reading
-    agrees either, with a function that is True when it is. `measured` are readings that take the time of machines.
+    `AtMost` or `AtLeast`, counts, True for a law, or a function that makes it, for a formula that takes long. `found`
+    computes the same as the statement says it; None where the statement leaves open what is meant, which `open` then
+    says. `how` says in words how it is computed. `readings` are tried in their order where `found` does not agree;
+    `instead` is what is right where no reading agrees either, with a function that is True when it is. `measured` are
+    readings that take the time of machines.
     """
 
     id: str
@@ -61,6 +64,11 @@ class Claim:
     @property
     def document(self) -> str:
         return self.id.split("-")[0]
+
+    @cached_property
+    def value(self) -> Any:
+        """What is claimed, made if it is not yet."""
+        return self.claimed() if isinstance(self.claimed, FunctionType) else self.claimed
 
 
 @dataclass(frozen=True)
@@ -80,7 +88,7 @@ class Decision:
             "place": claim.place,
             "claim": claim.claim,
             "verdict": self.verdict,
-            "claimed": shown(claim.claimed),
+            "claimed": shown(claim.value),
             "found": shown(self.found),
             "reading": self.reading,
         }
@@ -93,12 +101,12 @@ def decide(claim: Claim, *, measure: bool = False) -> Decision:
     **Returns** a `Decision`. A statement in place of a wrong one is shown only where its own computation confirms it.
     """
     found = claim.found() if claim.found else None
-    if claim.found and agrees(found, claim.claimed):
+    if claim.found and agrees(found, claim.value):
         return Decision(claim, "reproduced", found, claim.how)
     nearest = found
     for reading in (*claim.readings, *(claim.measured if measure else ())):
         value = reading.found()
-        if agrees(value, claim.claimed if reading.claimed is None else reading.claimed):
+        if agrees(value, claim.value if reading.claimed is None else reading.claimed):
             return Decision(claim, "reading", value, reading.words)
         nearest = value if nearest is None else nearest
     if claim.found is None:

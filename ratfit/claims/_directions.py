@@ -8,7 +8,7 @@ from typing import Any
 import sympy as sp
 
 from ratfit._lower import lower
-from ratfit.models.directions import LETTERS, cosines
+from ratfit.claims._models import LETTERS, cosines
 
 HEIGHTS, AZIMUTHS = 300, 240
 

@@ -8,9 +8,7 @@ from ratfit.brdf import distribution, masking
 from ratfit.claims._agreement import ZERO, AtLeast, AtMost
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo, over_pairs
-from ratfit.models.directions import V_PRIME, T, V, W
-from ratfit.models.lambert import LAMBERT
-from ratfit.models.ward import WARD_AS_PRINTED
+from ratfit.claims._models import V_PRIME, T, V, W, named
 
 ALPHA = sp.Symbol("alpha", positive=True)
 VIEWS = (0.05, 0.2, 0.5, 1.0)
@@ -45,15 +43,13 @@ def diffuse_of_eq_8() -> str:
     return str(colour)
 
 
-MASKED = masking.separable(masking.beckmann, V, V_PRIME, ALPHA)
-
 CLAIMS = (
     Claim(
         "S-3-lambert",
         "Eqs. 3, 4",
         "the constant C/pi reflects the share C of the light, so the diffuse term keeps the energy law",
         1,
-        lambda: albedo(LAMBERT.reflectance, 0.5, albedo=1.0),
+        lambda: albedo(named("lambert").reflectance, 0.5, albedo=1.0),
         how="quadrature over the hemisphere for C = 1",
     ),
     Claim(
@@ -66,7 +62,7 @@ CLAIMS = (
         readings=(
             Reading(
                 "with the masking that belongs to the facets; with G = 1 they reflect too much at grazing angles",
-                lambda: greatest_albedo(facets(MASKED), alpha=0.5),
+                lambda: greatest_albedo(facets(masking.separable(masking.beckmann, V, V_PRIME, ALPHA)), alpha=0.5),
             ),
         ),
     ),
@@ -82,7 +78,7 @@ CLAIMS = (
         "S-7",
         "Eqs. 6, 7",
         "in the cosine t Eq. 6 is the integral of 2 t D(t)",
-        of_power(2 * T, sp.S.One, 3),
+        lambda: of_power(2 * T, sp.S.One, 3),
         lambda: sp.integrate(sp.cos(ALPHA) ** 3 * 2 * sp.cos(ALPHA) * sp.sin(ALPHA), (ALPHA, 0, sp.pi / 2)),
         how="symbolic, for D = t^3",
     ),
@@ -110,7 +106,9 @@ CLAIMS = (
         "Eqs. 2, 10",
         "Ward's model is symmetric in view and light",
         ZERO,
-        lambda: asymmetry(WARD_AS_PRINTED.reflectance, diffuse=0.5, specular=1.0, specular_share=0.5, m=0.3, n=0.5),
+        lambda: asymmetry(
+            named("ward-as-printed").reflectance, diffuse=0.5, specular=1.0, specular_share=0.5, m=0.3, n=0.5
+        ),
         how="greatest relative change when they change places",
     ),
     Claim(

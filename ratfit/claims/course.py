@@ -7,15 +7,12 @@ from collections.abc import Callable
 import sympy as sp
 
 from ratfit._lower import tape
+from ratfit._target import parameter
 from ratfit.brdf import fresnel
 from ratfit.claims._agreement import AtLeast, AtMost, same
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo, over_pairs
-from ratfit.models import named
-from ratfit.models._scanline import highlight
-from ratfit.models.directions import LETTERS, V_PRIME, T, U, V, W
-from ratfit.models.oren_nayar import SIGMA, A, B
-from ratfit.models.tone import clamp
+from ratfit.claims._models import LETTERS, V_PRIME, T, U, V, W, named
 
 PRINTED = (
     "oren-nayar-as-printed",
@@ -92,9 +89,42 @@ def width(exponent: float, half: bool) -> float:
     return 2 * angle if half else angle
 
 
+SIGMA = parameter("sigma", 0, sp.pi / 2)
+
+
+def _oren_nayar() -> sp.Expr:
+    return named("oren-nayar-as-printed").reflectance
+
+
+def shares_of_oren_nayar() -> tuple[sp.Expr, sp.Expr]:
+    """A and B of Oren and Nayar's model: its value with no retro-reflection, and what that adds, over its angles."""
+    from ratfit.models.oren_nayar import A, B
+
+    return A, B
+
+
+def slopes_of_oren_nayar() -> tuple[sp.Expr, sp.Expr]:
+    """How A and B change with sigma, at sigma = 0.7."""
+    a, b = (sp.diff(each, SIGMA).subs(SIGMA, sp.Rational(7, 10)) for each in shares_of_oren_nayar())
+    return a, b
+
+
+def clamped() -> tuple[float, ...]:
+    from ratfit.models.tone import clamp
+
+    return tuple(float(each) for each in clamp([-1.0, 0.5, 2.0]))
+
+
+def highlights() -> tuple[float, ...]:
+    """Phong's highlight with the exponent 5 along the mirror direction, and at 120 degrees to it."""
+    from ratfit.models._scanline import highlight
+
+    return tuple(float(highlight(sp.Rational(cosine), sp.Integer(5))) for cosine in (1, "-1/2"))
+
+
 def retroreflection() -> float:
     """What Oren and Nayar's model reflects towards the light over what it reflects away from it, at 60 degrees."""
-    model = named("oren-nayar-as-printed").reflectance.subs(SIGMA, sp.Rational(1, 2))
+    model = _oren_nayar().subs(SIGMA, sp.Rational(1, 2))
     back, forth = ({U: 1, V: 0.5, V_PRIME: 0.5}, {U: 0.5, V: 0.5, V_PRIME: 0.5})
     return float(model.subs(back).subs("diffuse", 1).evalf() / model.subs(forth).evalf())
 
@@ -195,7 +225,7 @@ CLAIMS_OF_DIFFUSE = (
         "Color range",
         "clamp takes -1, 1/2 and 2 to 0, 1/2 and 1",
         (0, 0.5, 1),
-        lambda: tuple(float(each) for each in clamp([-1.0, 0.5, 2.0])),
+        clamped,
         how="the function of the slides",
     ),
     Claim(
@@ -249,7 +279,7 @@ CLAIMS_OF_DIFFUSE = (
         "Oren-Nayar",
         "for sigma = 0 the model becomes Lambert's: A = 1, B = 0",
         (1, 0),
-        lambda: (A.subs(SIGMA, 0), B.subs(SIGMA, 0)),
+        lambda: tuple(each.subs(SIGMA, 0) for each in shares_of_oren_nayar()),
         how="exact",
     ),
     Claim(
@@ -258,8 +288,8 @@ CLAIMS_OF_DIFFUSE = (
         "with sigma the share of Lambert's principle, A, falls and that of retro-reflection, B, grows",
         (True, True),
         lambda: (
-            bool(sp.simplify(sp.diff(A, SIGMA)).subs(SIGMA, 0.7) < 0),
-            bool(sp.simplify(sp.diff(B, SIGMA)).subs(SIGMA, 0.7) > 0),
+            bool(slopes_of_oren_nayar()[0] < 0),
+            bool(slopes_of_oren_nayar()[1] > 0),
         ),
         how="signs of the derivatives, which have no zero for sigma > 0",
     ),
@@ -303,7 +333,7 @@ CLAIMS_OF_SPECULAR = (
         "Phong",
         "the highlight is greatest along the mirror direction and 0 beyond 90 degrees from it",
         (1, 0),
-        lambda: tuple(float(highlight(sp.Rational(c), sp.Integer(5))) for c in (1, "-1/2")),
+        highlights,
         how="clamp of the cosine to a power, at 0 and 120 degrees",
     ),
     Claim(

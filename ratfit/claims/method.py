@@ -191,7 +191,7 @@ CLAIMS = (
         "S-12",
         "Eq. 12",
         "the fraction that keeps the four conditions is x (u + x)/(u + v x) with u = -pi^2/4 and v = pi + u",
-        card("eq12").published,
+        lambda: card("eq12").published,
         _sine,
         how="derived anew from the conditions",
     ),

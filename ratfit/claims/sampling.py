@@ -8,9 +8,9 @@ import sympy as sp
 
 from ratfit.brdf import sampling
 from ratfit.claims._claim import Claim, Reading
+from ratfit.claims._models import T
 from ratfit.claims._numbers import integral
 from ratfit.claims.schlick_model import R, Z
-from ratfit.models.directions import T
 
 Sample = Callable[[sp.Expr, sp.Expr], sp.Expr]
 

@@ -12,9 +12,9 @@ from ratfit.brdf import distribution, fresnel, masking, roughness
 from ratfit.claims._agreement import ZERO, AtLeast, AtMost, same
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo
+from ratfit.claims._models import V_PRIME, T, U, V, W
 from ratfit.claims._numbers import integral, values
 from ratfit.claims.background import asymmetry
-from ratfit.models.directions import V_PRIME, T, U, V, W
 
 R, P, M = parameter("r", "1/100", 1), parameter("p", "1/100", 1), parameter("m", "1/100", "1/2")
 PHI = parameter("phi", 0, sp.pi / 2)
@@ -203,7 +203,7 @@ CLAIMS = (
         "S-27-weight",
         "Eqs. 26, 27",
         "in the cosine w the condition on A has the weight 1/sqrt(1 - w^2)",
-        sp.integrate(sp.cos(PHI) ** 2, (PHI, 0, sp.pi / 2)),
+        lambda: sp.integrate(sp.cos(PHI) ** 2, (PHI, 0, sp.pi / 2)),
         lambda: sp.integrate(W**2 / sp.sqrt(1 - W**2), (W, 0, 1)),
         how="both integrals of w^2",
     ),

@@ -12,9 +12,8 @@ from ratfit.brdf import distribution
 from ratfit.claims._agreement import ZERO, AtLeast, AtMost
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo, over_pairs
+from ratfit.claims._models import T, U, named
 from ratfit.claims._numbers import integral, largest, values
-from ratfit.models import named
-from ratfit.models.directions import T, U
 
 ALPHA, X = parameter("alpha", "1/10", 1), parameter("x", "1/10", "3/2")
 THETA = parameter("theta", 0, sp.pi / 2)
@@ -174,7 +173,7 @@ CLAIMS = (
         "SM-normalization",
         "Normalization",
         "the integral of D at half the angle is 1/2 + x^2 log x - x^2/2 log(1 + x^2), x standing for alpha",
-        distribution.smoothie_energy_as_printed(ALPHA),
+        lambda: distribution.smoothie_energy_as_printed(ALPHA),
         energy_formula,
         how="a formula that agrees with quadrature at four alpha",
         instead=Reading(

@@ -1,0 +1,32 @@
+"""The letters that reflectances are written in, and the models by their names.
+
+All models are made when the first of them is asked for, which takes a second that most claims can do without. So what
+needs them imports them late, and the letters are made here once more: symbols of one name and range are one symbol.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ratfit._target import parameter
+
+if TYPE_CHECKING:
+    from ratfit.models import Model
+
+T, U, V, V_PRIME, W = (parameter(name, 0, 1) for name in ("t", "u", "v", "v_prime", "w"))
+LETTERS = (T, U, V, V_PRIME, W)
+"""Those of `ratfit.models.directions`."""
+
+
+def named(name: str) -> Model:
+    """A model by its name, as `ratfit.models.named`."""
+    from ratfit.models import named as model
+
+    return model(name)
+
+
+def cosines(view: Any, light: Any) -> tuple[Any, ...]:
+    """The letters' values for pairs of directions, as `ratfit.models.directions.cosines`."""
+    from ratfit.models.directions import cosines as letters
+
+    return letters(view, light)

@@ -14,8 +14,8 @@ import sympy as sp
 from ratfit._target import Parameter, parameter
 from ratfit.models.directions import V_PRIME, T, V, W
 
-LOW, LOW_PRINTED = sp.Rational(1, 10**9), sp.Rational(1, 10**5)
-"""Cosines below count as this much where one divides by them, by how many is the reason: float32 holds the result."""
+LOW, LOW_PRINTED = sp.Rational(1, 10**9), sp.Rational(1, 10**4)
+"""Cosines below count as this where one divides by them, so that float32 holds the result; in print by more of them."""
 
 NEARLY_MIRROR = sp.Rational(1, 10**12)
 """Z of a smaller r counts as that of this one: its lobe is narrower than float64 can tell directions apart."""

@@ -10,7 +10,8 @@ What facets hide is given back as kulla2017 do it, (1 - E(v)) (1 - E(v'))/(pi (1
 - E is no less than the albedo of those facets in any azimuth. It is a closed form, `hidden`, whose 18 coefficients
   were found once by a linear programme: below 1 - albedo for every r, p and azimuth, and nowhere far below: weighted by
   b = 4 r (1 - r), as the model does, a white isotropic surface loses 1.8 % of the light at most. For p < 1 it loses
-  more, as E is that of the azimuth that reflects most.
+  more, as E is that of the azimuth that reflects most: 42 % of what comes along the scratches, grazing, at r = 0.3,
+  p = 0.2.
 
 Multiplied by S(u) <= 1 the facets reflect less; the re-emission is coloured by many reflections of the mean S.
 """

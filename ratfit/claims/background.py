@@ -43,6 +43,13 @@ def diffuse_of_eq_8() -> str:
     return str(colour)
 
 
+def attenuation(heights: float) -> float:
+    """He's coefficient of the coherent term at normal incidence, for RMS heights over the wavelength."""
+    from ratfit.models.he import attenuation as coefficient
+
+    return float(coefficient(sp.S.One, sp.S.One, sp.Float(heights)))
+
+
 CLAIMS = (
     Claim(
         "S-3-lambert",
@@ -99,6 +106,14 @@ CLAIMS = (
         "the coherent term decreases rapidly as roughness increases",
         "decreases",
         None,
+        readings=(
+            Reading(
+                "with A = exp(-g) of he1991: its value at normal incidence for heights of a fifth of the wavelength "
+                "over that for a twentieth",
+                lambda: attenuation(0.2) / attenuation(0.05),
+                AtMost(0.1),
+            ),
+        ),
         open="the source gives no expression of the roughness attenuation A of Eq. 9",
     ),
     Claim(

@@ -266,6 +266,20 @@ CLAIMS_OF_DIFFUSE = (
         how="the number of the cosines that the model depends on",
     ),
     Claim(
+        "PM-lambert-brdf",
+        "Lambert",
+        "the reflectance of Lambert's model is m_D max(cos, 0), although it is constant",
+        0,
+        lambda: len((D_COLOUR * sp.Max(V_PRIME, 0)).free_symbols & set(LETTERS)),
+        how="the number of the cosines that it depends on",
+        readings=(
+            Reading(
+                "the cosine of the rendering equation is counted in: what is left is constant",
+                lambda: len(sp.simplify(D_COLOUR * sp.Max(V_PRIME, 0) / V_PRIME).free_symbols & set(LETTERS)),
+            ),
+        ),
+    ),
+    Claim(
         "PM-lambert-white",
         "Lambert",
         "in white light an object has the colour m_D",

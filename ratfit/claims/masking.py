@@ -344,6 +344,18 @@ CLAIMS = (
         how="the limit for GGX, and the branch a >= 1.6 for Beckmann",
     ),
     Claim(
+        "DP-G1-below",
+        "G term",
+        "the formulas of G1 are for an arbitrary vector, so for one below the surface too, which sees no facet",
+        0,
+        lambda: float(values(masking.ggx_as_printed(V, ALPHA), {V: -0.5, ALPHA: 0.5})),
+        how="GGX at v.N = -1/2, alpha = 1/2",
+        instead=Reading(
+            "the printed formulas hold above the surface and need a 0 below it",
+            lambda: float(values(masking.ggx(V, ALPHA), {V: -0.5, ALPHA: 0.5})) == 0,
+        ),
+    ),
+    Claim(
         "DP-V-1",
         "Visibility",
         "V = 1 darkens too fast",

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import sympy as sp
 
+from ratfit._parse import RatfitError, parse_expression
 from ratfit._target import parameter
 from ratfit.brdf import distribution
 from ratfit.claims._agreement import ZERO, AtLeast, AtMost
@@ -96,6 +97,15 @@ def ratio(name: str) -> sp.Expr:
     return version / text
 
 
+def is_formula(text: str) -> bool:
+    """Whether a text is a formula in x."""
+    try:
+        parse_expression(text, {"x": X}, "the listing")
+    except RatfitError:
+        return False
+    return True
+
+
 CLAIMS = (
     Claim(
         "SM-perceptual",
@@ -115,6 +125,18 @@ CLAIMS = (
         instead=Reading(
             "it takes the normalised H for h, and so loses the factor 1/(h.h) = 1/(4 u^2)",
             lambda: bool(abs(over_pairs(ratio(CODE) / HH) - 1).max() < 1e-9),
+        ),
+    ),
+    Claim(
+        "SM-listing",
+        "Implementation",
+        "the exponent of F can be computed as it is listed",
+        True,
+        lambda: is_formula("-1.71983 \u2013 5.43926*x"),
+        how="read as a formula",
+        instead=Reading(
+            "with a minus sign in the place of the dash, here and wherever the listings subtract",
+            lambda: is_formula("-1.71983 - 5.43926*x"),
         ),
     ),
     Claim(

@@ -25,6 +25,9 @@ TOLERANCE = 1e-4
 ORDER, FINEST = 6, 24
 """Nodes along the azimuth of a panel: at first, and at most; those along theta go with them."""
 
+DISTRUST = 0.1
+"""The share of the difference between two ways that the better one is held to be off by, at least."""
+
 AT_ONCE = 60_000
 """Pairs of directions in one call: what stays in a processor's cache."""
 
@@ -56,7 +59,8 @@ def albedo(
 
     **Returns** the albedos. Each error is the change that came with the last doubling of the nodes, along half vectors
     or along the light's own angles, whichever changes less; it stays above the tolerance where a model jumps (a
-    threshold), has no integral, or has a lobe narrower than a ten-thousandth of a radian.
+    threshold), has no integral, or has a lobe narrower than a ten-thousandth of a radian. An estimate, not a bound:
+    where a model jumps the error may be several times as great.
     **Fails** with `RatfitError` for cosines outside (0, 1] and for parameters that are not one number.
     """
     cosines, known = _checked(model, cosines, values)
@@ -66,7 +70,9 @@ def albedo(
     unfinished = errors > tolerance * np.maximum(1, found)
     other, other_errors = _doubled(ask, light_nodes, cosines[unfinished])
     is_better = np.zeros(found.shape, bool)
-    agree = np.abs(other - found[unfinished]) <= errors[unfinished] + tolerance  # nodes may miss a lobe twice
+    apart = np.abs(other - found[unfinished])
+    agree = apart <= errors[unfinished] + tolerance  # nodes may miss a lobe twice
+    other_errors = np.maximum(other_errors, DISTRUST * apart)  # or change little by chance, where a model jumps
     is_better[unfinished] = agree & (other_errors < errors[unfinished])
     found[is_better], errors[is_better] = other[is_better[unfinished]], other_errors[is_better[unfinished]]
     for nodes, mine in ((facet_nodes, ~is_better), (light_nodes, is_better)):

@@ -28,7 +28,8 @@ def normalisation(model: Model, fixed: Setting, seed: int) -> Law:
         return Law("normalisation of D", NOT_APPLICABLE, measure, remark="the model states no distribution of facets")
     mine = {symbol.name for symbol in model.facets.free_symbols}
     worst, slack, place = 0.0, 0.0, {}
-    for setting in settings(model, fixed, SETTINGS, seed):
+    tried = settings(model, fixed, SETTINGS, seed)
+    for setting in {tuple(s[name] for name in sorted(mine & s.keys())): s for s in tried}.values():
         value, error = _settled(model, setting)
         distance = abs(value - 1) if math.isfinite(value) else math.inf
         if distance > worst:

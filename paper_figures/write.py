@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from paper_figures import style
 from ratfit._record import write_bytes
+from ratfit.plot.write import quiet_fonts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,7 +35,7 @@ def write_figure(figure: Figure, caption: str, stem: Path, formats: Sequence[str
     written = []
     for suffix in formats:
         drawn = BytesIO()
-        with matplotlib.rc_context(style.settings(25.4 * figure.get_figwidth())):
+        with matplotlib.rc_context(style.settings(25.4 * figure.get_figwidth())), quiet_fonts():
             figure.savefig(drawn, format=suffix, dpi=DOTS, metadata=_metadata(suffix, stem.name, caption))
         path = stem.with_name(f"{stem.name}.{suffix}")
         write_bytes(path, _shortened(drawn.getvalue()) if suffix == "svg" else drawn.getvalue())

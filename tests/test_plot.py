@@ -329,7 +329,7 @@ def test_nothing_of_matplotlib_is_left_changed(smith):
 
 
 @pytest.mark.parametrize("suffix", ["svg", "pdf", "png"])
-def test_a_picture_is_the_same_to_the_last_byte(suffix, tmp_path):
+def test_a_picture_is_the_same_to_the_last_byte_and_written_in_silence(suffix, tmp_path, caplog):
     from matplotlib.figure import Figure
 
     fit = line_through(sp.exp(X), 0, 1)
@@ -338,6 +338,7 @@ def test_a_picture_is_the_same_to_the_last_byte(suffix, tmp_path):
         write_picture(fit.plot(Figure(figsize=(3, 2)).subplots())[0].figure, file)
     first, second = (file.read_bytes() for file in files)
     assert first == second and len(first) > 2000
+    assert not caplog.records
     if suffix == "svg":
         assert b"<text" not in first, "letters are shapes: no font is needed"
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -40,6 +43,18 @@ def write_picture(figure: Figure, file: str | Path) -> None:
 def drawn(figure: Figure, format_: str, dots: float) -> bytes:
     """A figure as the bytes of a file of a format, with so many dots an inch where it has dots."""
     written = BytesIO()
-    with settings():
+    with settings(), quiet_fonts():
         figure.savefig(written, format=format_, dpi=dots, metadata=_UNSAID[format_])
     return written.getvalue()
+
+
+@contextmanager
+def quiet_fonts() -> Iterator[None]:
+    """fontTools complains of the dates in matplotlib's own fonts, which nobody who writes a PDF can mend."""
+    logger = logging.getLogger("fontTools.ttLib.tables._h_e_a_d")
+    before = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(before)

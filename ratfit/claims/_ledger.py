@@ -9,11 +9,16 @@ from ratfit.claims import (
     background,
     course,
     distributions,
+    distributions_slides,
     fresnel,
+    fresnel_slides,
+    highlights,
     masking,
+    masking_slides,
     method,
     published_errors,
     sampling,
+    schlick_factors,
     schlick_model,
     smoothie,
     smoothie_fresnel,
@@ -22,6 +27,7 @@ from ratfit.claims._claim import DOCUMENTS, Claim
 
 _THEMES = (
     course,
+    highlights,
     smoothie,
     background,
     method,
@@ -29,8 +35,12 @@ _THEMES = (
     masking,
     distributions,
     published_errors,
+    schlick_factors,
     schlick_model,
     sampling,
+    fresnel_slides,
+    distributions_slides,
+    masking_slides,
     smoothie_fresnel,
 )
 

@@ -1,4 +1,4 @@
-"""The Fresnel factor: section 4.2 of schlick1994, and what the other three documents say of it."""
+"""The Fresnel factor: section 4.2 of schlick1994."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from ratfit.claims._numbers import midpoints, values
 from ratfit.claims.method import derived
 
 U, F = parameter("u", 0, 1), parameter("f", 0, 1)
+
 ETA, KAPPA = parameter("eta", "11/10", 4), parameter("kappa", 0, 6)
 
 Material = tuple[sp.Expr, sp.Expr]
@@ -120,15 +121,6 @@ def spread_of_levels(materials: tuple[Material, ...]) -> float:
     return max(levels) - min(levels)
 
 
-def worst_of_schlick(materials: tuple[Material, ...]) -> float:
-    """The greatest error of the power with exponent 5, with f of each material."""
-    import numpy as np
-
-    u = midpoints()
-    errors = [curve(m, u) - values(fresnel.schlick(U, F), {U: u, F: normal(m)}) for m in materials]
-    return float(np.max(np.abs(errors)))
-
-
 def spectral_at(formula: Callable[..., sp.Expr], f: float) -> Any:
     """Eq. 14 or its clamped form at the normal reflectance f, for all materials."""
     import numpy as np
@@ -138,12 +130,6 @@ def spectral_at(formula: Callable[..., sp.Expr], f: float) -> Any:
     scaled = formula(average, level, F)
     u = midpoints(count=2000)
     return np.array([values(scaled, {average: curve(each, u), level: normal(each), F: f}) for each in all_materials()])
-
-
-def is_total_below_critical() -> bool:
-    """Whether the slides' formula is real and 1 where light comes from the denser side beyond the critical angle."""
-    value = sp.N(fresnel.dielectric_as_printed(sp.Rational(1, 5), sp.Rational(2, 3)), 30)
-    return bool(value.is_real and abs(value - 1) < 1e-20)
 
 
 def is_clamped(f: float) -> bool:
@@ -156,11 +142,6 @@ def exponents() -> str:
     """The exponents that the four conditions leave, as an interval, or the one."""
     free = derived("eq15").free
     return ", ".join(f"({low}, {high})" for low, high in free.values()) or str(derived("eq15").chosen)
-
-
-def spread_over_angles(material: Material) -> float:
-    found = curve(material, midpoints())
-    return float(found.max() - found.min())
 
 
 def falls_with_u(materials: tuple[Material, ...]) -> bool:
@@ -177,6 +158,7 @@ KEEPS = (
     (2, sp.S.One, sp.S.Zero),
 )
 """Order, place and value of the four conditions of Eq. 15."""
+
 
 CLAIMS = (
     Claim(
@@ -288,78 +270,5 @@ CLAIMS = (
         True,
         lambda: falls_with_u(DIELECTRICS),
         how="diamond and glass, F falls in u all the way",
-    ),
-    Claim(
-        "DP-F-schlick",
-        "F term",
-        "Ks + (1 - Ks)(1 - L.H)^5 is the specular colour Ks where light, view and normal are one",
-        F,
-        lambda: fresnel.schlick(sp.S.One, F),
-        how="symbolic",
-    ),
-    Claim(
-        "DP-F-exact",
-        "F term",
-        "the formula in g and c is the exact Fresnel factor",
-        True,
-        lambda: (
-            is_fresnel(lambda u, each: fresnel.dielectric_as_printed(u, each[0]), DIELECTRICS)
-            and is_total_below_critical()
-        ),
-        readings=(
-            Reading(
-                "for light that comes from the thinner side; from the denser side g is not real beyond the critical "
-                "angle, where F = 1",
-                lambda: is_fresnel(lambda u, each: fresnel.dielectric_as_printed(u, each[0]), DIELECTRICS),
-            ),
-        ),
-    ),
-    Claim(
-        "DP-F-grazing",
-        "D, F and G",
-        "the Fresnel term varies greatly with the angle of incidence",
-        AtLeast(0.9),
-        lambda: spread_over_angles(DIELECTRICS[1]),
-        how="glass: greatest less least value",
-    ),
-    Claim(
-        "PM-F-conductor",
-        "Cook-Torrance, Fresnel term",
-        "the power with exponent 5 does not work well for conductors",
-        True,
-        None,
-        readings=(
-            Reading(
-                "its worst error over copper, gold, silver, aluminium and iron is above that over glass and diamond; "
-                "for gold, silver and copper alone it is below",
-                lambda: (
-                    worst_of_schlick(of_metals("copper", "gold", "silver", "aluminium", "iron"))
-                    > worst_of_schlick(DIELECTRICS)
-                    > worst_of_schlick(of_metals("copper", "gold", "silver"))
-                ),
-            ),
-        ),
-        open="well means no number",
-    ),
-    Claim(
-        "PM-F-grazing",
-        "Ward and beyond",
-        "objects reflect more when the light comes almost along the surface",
-        True,
-        lambda: falls_with_u((*DIELECTRICS, *of_metals("copper", "aluminium", "iron"))),
-        readings=(
-            Reading(
-                "non-metals; metals dip before they rise",
-                lambda: falls_with_u(DIELECTRICS) and not falls_with_u(of_metals("aluminium")),
-            ),
-        ),
-    ),
-    Claim(
-        "PM-F-range",
-        "Cook-Torrance, Fresnel term",
-        "F0 in [0, 1] says how the response changes with the angle: F is between F0 and 1",
-        (F, sp.S.One),
-        lambda: (fresnel.schlick_clamped(sp.S.One, F), fresnel.schlick_clamped(sp.S.Zero, F)),
-        how="at both ends; it is monotonous between",
     ),
 )

@@ -39,6 +39,8 @@ def check_text(check: Check) -> str:
     about = [line for law in check.laws for line in _about(law)]
     lines += ["", *about] if about else []
     lines += ["", *(f"  {line}" for line in _albedo_lines(check))]
+    shown, bright = (_place(each) or "no parameters" for each in (check.setting, check.brightest.setting))
+    lines += ["", *_wrapped("albedo", f"at {shown}", 22), *_wrapped("brightest setting", f"at {bright}", 22)]
     return "\n".join(lines)
 
 
@@ -118,8 +120,7 @@ def _albedo_lines(check: Check) -> list[str]:
         for c, m, e in list(zip(*(each.tolist() for each in _parts(check.samples)), strict=True))[::step]
     ]
     head = ["view", "albedo", "by samples", "brightest setting"]
-    shown = ", ".join(f"{name} = {value:g}" for name, value in check.setting.items())
-    return [*aligned([head, *rows]), "", f"albedo at {shown}" if shown else "the model has no parameters"]
+    return aligned([head, *rows])
 
 
 def _parts(albedo: Albedo) -> tuple[Any, Any, Any]:

@@ -1,5 +1,6 @@
 """The ledger of claims: its shape, what it decides, that it could decide otherwise, its command and its page."""
 
+import importlib
 import json
 import math
 import re
@@ -13,6 +14,7 @@ import mpmath
 import pytest
 import sympy as sp
 
+import ratfit.claims
 from ratfit.brdf import distribution, fresnel, masking
 from ratfit.claims import (
     DOCUMENTS,
@@ -59,6 +61,13 @@ def test_ids_are_document_place_what_and_there_is_one_of_each():
         assert claim.document in DOCUMENTS and name.startswith(f"{claim.document}-")
         assert claim.claim and claim.place and claim.claimed is not None
         assert claim.found or claim.readings or claim.open, name
+
+
+def test_every_theme_is_in_the_ledger():
+    folder = Path(ratfit.claims.__file__).parent
+    for path in folder.glob("[!_]*.py"):
+        theme = importlib.import_module(f"ratfit.claims.{path.stem}")
+        assert theme.CLAIMS and all(LEDGER[claim.id] is claim for claim in theme.CLAIMS), path.stem
 
 
 def test_every_document_has_claims():

@@ -18,8 +18,17 @@ def by_reflect(light: sp.Matrix, normal: sp.Matrix) -> sp.Matrix:
 
 
 def half_angle_ratio(view: float, light: float) -> float:
-    """The angle of the half vector to the normal over that of the view to the mirrored light, in one plane."""
-    return abs(view + light) / 2 / abs(view + light)
+    """The angle of half vector and normal over that of view and mirrored light, from the vectors in a plane.
+
+    view and light are their angles to the normal, with signs.
+    """
+    normal, towards, source = (sp.Matrix([sp.sin(angle), 0, sp.cos(angle)]) for angle in (0.0, view, light))
+    mirror = mirrored(source, normal)
+    return angle_between(towards + source, normal) / angle_between(mirror, towards)
+
+
+def angle_between(a: sp.Matrix, b: sp.Matrix) -> float:
+    return float(sp.acos(a.dot(b) / (a.norm() * b.norm())))
 
 
 def width(exponent: float, half: bool) -> float:

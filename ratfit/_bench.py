@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
@@ -20,15 +20,21 @@ from ratfit._setting import RANDOM, Setting, Value, setting
 from ratfit._speed import measure_speed
 from ratfit.baselines import Peer, Unavailable, peers
 
+if TYPE_CHECKING:
+    from ratfit.models.stand_ins import StandIn
+
 TIMED = 1_000_000
 """Samples that are timed, however many the errors are measured at: gamma of fewer says little, of more no more."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """What to measure: a fit, or a peer of it, against the target (reference None) or a reference, somewhere."""
+    """What to measure: a fit, or a peer of it, against the target (reference None) or a reference, somewhere.
 
-    fit: Fit
+    Or a model that stands for another, on pairs of directions.
+    """
+
+    fit: Fit | StandIn
     parameters: Mapping[str, Value]
     reference: str | None
     within: tuple[float, float] | None = None
@@ -90,6 +96,17 @@ def jobs(
     return found
 
 
+def model_jobs(name: str, asked: Mapping[str, Value]) -> list[Job]:
+    """The jobs of a whole model: everything that stands for it, or itself where it stands for another.
+
+    Parameters that are left out have the model's defaults. **Fails** with `RatfitError` for a model that is neither,
+    and for a name that is no parameter.
+    """
+    from ratfit.models.stand_ins import stand_ins
+
+    return [Job(each, each.settings(asked), None) for each in stand_ins(name)]
+
+
 def _value(value: sp.Expr | Value) -> Value:
     return value if isinstance(value, str) else float(value)
 
@@ -107,6 +124,8 @@ def peer_jobs(found: Sequence[Job]) -> tuple[list[Job], list[tuple[str, str]]]:
     made: list[Job] = []
     missing: dict[str, str] = {}
     for job in filter(is_timed, found):
+        if not isinstance(job.fit, Fit):
+            continue  # a peer is made for a function of one variable
         if RANDOM in job.parameters.values():
             missing["peers"] = "one is made for values of the parameters, not for random ones"
             continue
@@ -126,7 +145,7 @@ def is_timed(job: Job) -> bool:
 def asked(job: Job, how: Measuring, backend: str) -> dict[str, Any]:
     """The measurement that one row is the result of, in the keys that rows have for it."""
     place = job.place
-    sampling = resolve(how.sampling, place.variable.name, place.low, place.high, how.dtype)
+    sampling = resolve(how.sampling, place.variable.name, place.low, place.high, how.dtype, place.drawn)
     samples = count(place.low, place.high, how.dtype) if how.samples is None else how.samples
     said = {"samples": samples, "sampling": named(sampling, job.within), "seed": how.seed, "dtype": how.dtype}
     return {

@@ -19,6 +19,9 @@ from ratfit._schedule import schedule
 RANDOM = "random"
 """In place of a parameter's value: every sample draws a value of its own from the parameter's range."""
 
+PAIR = ("t", "u", "v", "v_prime", "w")
+"""The cosines of a pair of directions, in the letters of schlick1994: what a whole reflectance model is written in."""
+
 Value = float | str
 
 
@@ -39,7 +42,18 @@ class Setting:
     def parameters(self) -> dict[str, Any]:
         """The values by name, in the order of the names, and (low, high) of what is drawn: what a record says."""
         known = {symbol.name: value for symbol, value in (*self.values.items(), *self.ranges.items())}
-        return {name: known[name] for name in sorted(known)}
+        cosines = PAIR if self.whole else ()
+        return {name: known[name] for name in sorted(known) if name not in cosines}
+
+    @property
+    def drawn(self) -> tuple[str, ...]:
+        """The names of what every sample draws anew beside the variable."""
+        return tuple(symbol.name for symbol in self.ranges)
+
+    @property
+    def whole(self) -> bool:
+        """Whether this is a whole model, whose variables are the cosines of a pair of directions."""
+        return (self.variable.name, *self.drawn)[: len(PAIR)] == PAIR
 
     @property
     def varying(self) -> tuple[sp.Symbol, ...]:
@@ -128,7 +142,8 @@ def _ranges(problem: Any, names: list[str], given: Mapping[sp.Symbol, sp.Expr]) 
         if name not in known:
             there = ", ".join(known) or "none"
             raise RatfitError(f"no parameter {name!r} to draw at random, there is: {there}{nearest(name, known)}")
-    return {known[name]: (float(known[name].low), float(known[name].high)) for name in sorted(names)}
+    # In the order of the problem, that the first are the cosines of a pair where there are such.
+    return {each: (float(each.low), float(each.high)) for name, each in known.items() if name in names}
 
 
 def _exact(problem: Any, reference: str | None) -> tuple[sp.Expr, Mapping[sp.Symbol, sp.Expr]]:

@@ -15,14 +15,18 @@ VALUES = 33
 """Values of a parameter that is drawn at random; the other random ones stand in the middle of their ranges."""
 
 
-def error_curve(place: Setting, dtype: str) -> dict[str, Any]:
+def error_curve(place: Setting, dtype: str) -> dict[str, Any] | None:
     """The error in each of 256 equal intervals of the domain, from 16 points in each, as JSON holds it.
 
     Keys: `variable`, the `edges` of the intervals, `exact` and `fit` in their middles, `bias` (the mean signed error)
     and `absolute_max` in each, None where nothing is finite; and `parameters`: for each parameter that is drawn at
-    random its `values` and the greatest error over the domain at each, `absolute_max`.
+    random its `values` and the greatest error over the domain at each, `absolute_max`. None of a whole model, which
+    has no one variable.
     """
     import numpy as np
+
+    if place.whole:
+        return None
 
     middle = {symbol: (low + high) / 2 for symbol, (low, high) in place.ranges.items()}
     edges = np.linspace(place.low, place.high, INTERVALS + 1)

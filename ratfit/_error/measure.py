@@ -100,7 +100,7 @@ def measure_error(
     """
     check_protocol(sampling, samples, seed, dtype)
     place = setting(fit, parameters, reference, within)
-    sampling = resolve(sampling, place.variable.name, place.low, place.high, dtype)
+    sampling = resolve(sampling, place.variable.name, place.low, place.high, dtype, place.drawn)
     if samples is None:
         samples = count(place.low, place.high, dtype)
     exhaustive = sampling == "exhaustive"

@@ -41,7 +41,12 @@ def poles_of_exact(place: Setting) -> tuple[float, ...]:
 
 
 def _places(place: Setting, formula: sp.Expr, other: sp.Expr, polynomials: bool = False) -> tuple[float, ...]:
-    """Where one expression is infinite and the other is not; on wish only zeros of polynomials are looked at."""
+    """Where one expression is infinite and the other is not; on wish only zeros of polynomials are looked at.
+
+    Of a whole model nothing is said: its cosines belong together, and none is on its own an axis with poles.
+    """
+    if place.whole:
+        return ()
     x = place.variable
     fixed = {symbol: sp.Rational(value) for symbol, value in place.values.items()}
     middle = {symbol: (low + high) / 2 for symbol, (low, high) in place.ranges.items()}

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from ratfit._parse import RatfitError, nearest
 from ratfit._sampling.exhaustive import check_exhaustive
 from ratfit._sampling.protocols import CARRIERS, PROTOCOLS
 from ratfit._sampling.sobol import DIGITS
+from ratfit._setting import PAIR
 
 DTYPES = ("float16", "float32", "float64")
+
+WHOLE = "pair"
+"""In place of the letter of one cosine: all of them."""
 
 _DOMAINS: Mapping[str, tuple[float, float]] = {
     "angle": (-1, 1),
@@ -19,10 +23,12 @@ _DOMAINS: Mapping[str, tuple[float, float]] = {
 }
 
 
-def resolve(sampling: str, variable: str, low: float, high: float, dtype: str) -> str:
+def resolve(sampling: str, variable: str, low: float, high: float, dtype: str, drawn: Sequence[str] = ()) -> str:
     """The canonical name of a protocol, as records have it: `in-plane` of a variable `u` is `in-plane:u`.
 
-    **Arguments:** the protocol as the user says it; the name of the problem's variable and its domain; the dtype.
+    **Arguments:** the protocol as the user says it; the name of the problem's variable and its domain; the dtype; the
+    names of what is drawn at random beside the variable. A formula of all cosines of a pair (`PAIR`) is sampled on
+    pairs alone: cosines that belong to no pair of directions mean nothing.
 
     **Fails** with `RatfitError` for an unknown protocol, a pair of directions without a cosine that the variable is, a
     domain that the protocol does not draw from, and a dtype that `exhaustive` cannot visit.
@@ -33,6 +39,13 @@ def resolve(sampling: str, variable: str, low: float, high: float, dtype: str) -
     if family == "exhaustive":
         check_exhaustive(dtype)
     letters = _letters(family)
+    if (variable, *drawn)[: len(PAIR)] == PAIR:
+        if family != "hemisphere" or letter not in ("", WHOLE):
+            raise RatfitError(f"a whole model is sampled on pairs of directions: say hemisphere, not {sampling}")
+        return f"{family}:{WHOLE}"
+    if letter == WHOLE:
+        raise RatfitError(f"{sampling} draws every cosine of a pair, for a whole model: say which one, as {family}:u")
+    letters = [known for known in _letters(family) if known != WHOLE]
     if not letters:
         return family
     letter = letter or (variable if variable in letters else "")

@@ -38,6 +38,11 @@ def hemisphere_v(coordinate: Coordinate) -> Any:
     return coordinate(0)
 
 
+def hemisphere_v_prime(coordinate: Coordinate) -> Any:
+    """The same of V'.N."""
+    return coordinate(1)
+
+
 def hemisphere_u(coordinate: Coordinate) -> Any:
     """H halves the angle between V and V', so that V + V' has the length 2 u."""
     return _length(coordinate) / 2

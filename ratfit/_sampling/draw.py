@@ -80,9 +80,12 @@ def _random(sampling: str, dtype: str) -> Drawing:
     carrier = CARRIERS[sampling]
 
     def points(seed: Any, counters: Any, ranges: list[Any]) -> tuple[Any, ...]:
-        variable, *parameters = (Ends(*each) for each in ranges)
-        exact = carrier.point(functools.partial(carrier.variable, seed, counters), variable)
-        found = [_inside(exact, variable, dtype)]
+        variable, *drawn = (Ends(*each) for each in ranges)
+        coordinates = functools.partial(carrier.variable, seed, counters)
+        found = [_inside(carrier.point(coordinates, variable), variable, dtype)]
+        others, parameters = drawn[: len(carrier.others)], drawn[len(carrier.others) :]
+        for quantity, other in zip(carrier.others, others, strict=False):
+            found.append(_inside(quantity(coordinates), other, dtype))
         for coordinate, parameter in enumerate(parameters, 1):
             exact = uniform(carrier.parameter(seed, counters, coordinate), parameter)
             found.append(_inside(exact, parameter, dtype))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ratfit._sampling.counter import direction_fractions, fractions
@@ -12,6 +12,7 @@ from ratfit._sampling.directions import (
     hemisphere_t,
     hemisphere_u,
     hemisphere_v,
+    hemisphere_v_prime,
     hemisphere_w,
     plane_t,
     plane_u,
@@ -40,6 +41,7 @@ class Carrier:
     point: Callable[[Coordinate, Ends], Any]
     variable: Callable[[Any, Any, int], Any] = fractions  # (seed, counters, coordinate): the variable's coordinates
     parameter: Callable[[Any, Any, int], Any] = fractions  # the same, of the parameters drawn at random
+    others: tuple[Callable[[Coordinate], Any], ...] = ()  # what else of the same pair of directions, before parameters
 
 
 def uniform(fraction: Any, ends: Ends) -> Any:
@@ -77,6 +79,12 @@ CARRIERS: Mapping[str, Carrier] = {
     "hemisphere:u": _pair(hemisphere_u),
     "hemisphere:v": _pair(hemisphere_v),
     "hemisphere:w": _pair(hemisphere_w),
+    "hemisphere:pair": replace(
+        _pair(hemisphere_t), others=(hemisphere_u, hemisphere_v, hemisphere_v_prime, hemisphere_w)
+    ),
     "sobol": Carrier(_variable, sobol_fractions, sobol_fractions),
 }
-"""Every protocol that draws at random, by its canonical name, which says which cosine of a pair the variable is."""
+"""Every protocol that draws at random, by its canonical name, which says which cosine of a pair the variable is.
+
+`hemisphere:pair` draws all five cosines of a pair together, for a formula of all of them (`Setting.whole`).
+"""

@@ -12,7 +12,7 @@ import sympy as sp
 from ratfit._kernel import Hoisted, Program, hoist
 from ratfit._lower import Step, tape
 from ratfit._parse import RatfitError
-from ratfit._sampling import bounds, drawn
+from ratfit._sampling import bounds, drawn, resolve
 from ratfit._setting import Setting
 
 NAMES = ("exact function", "fit", "copy floor")
@@ -59,7 +59,7 @@ class Runs:
 
 
 def contest(place: Setting, samples: int, seed: int, dtype: str) -> Contest:
-    """Exact, fit and floor of a setting, on the uniform samples of this seed."""
+    """Exact, fit and floor of a setting, on uniform samples; of a whole model, on pairs of directions."""
     return Contest(entrants(place), _samples(place, samples, seed, dtype), place, dtype)
 
 
@@ -77,6 +77,7 @@ def _entrant(name: str, program: Program, place: Setting) -> Entrant:
 def _samples(place: Setting, samples: int, seed: int, dtype: str) -> tuple[Any, ...]:
     import numpy as np
 
-    return tuple(
-        map(np.asarray, drawn("uniform", seed, np.arange(samples, dtype=np.uint64), bounds(place, dtype), dtype))
-    )
+    protocol = "hemisphere" if place.whole else "uniform"
+    sampling = resolve(protocol, place.variable.name, place.low, place.high, dtype, place.drawn)
+    points = drawn(sampling, seed, np.arange(samples, dtype=np.uint64), bounds(place, dtype), dtype)
+    return tuple(map(np.asarray, points))

@@ -16,7 +16,16 @@ from ratfit._inline import settings_of
 from ratfit._parse import RatfitError
 from ratfit._target import exact
 from ratfit.cli.derive import rendered
-from ratfit.cli.options import EXPRESSION_HELP, WORDS, Number, derived, problem_options, read_problem, together
+from ratfit.cli.options import (
+    EXPRESSION_HELP,
+    WORDS,
+    Number,
+    derived,
+    problem_options,
+    read_problem,
+    stated_words,
+    together,
+)
 from ratfit.gallery import Card
 
 if TYPE_CHECKING:
@@ -32,10 +41,8 @@ measure_options = together(
     click.option("--samples", type=Number(), default=None, metavar="N", help="Samples: 1000000, or say 1e9."),
     click.option(
         "--sampling",
-        default="uniform",
-        show_default=True,
         metavar="NAME",
-        help="Protocol: uniform, angle, cosine, in-plane, hemisphere, sobol.",
+        help="Protocol: uniform (the default), angle, cosine, in-plane, hemisphere (that of a model), sobol.",
     ),
     click.option("--exhaustive", is_flag=True, help="Every number of --dtype in the domain, its ends included."),
     click.option("--dtype", default="float32", show_default=True, metavar="float16|32|64", help="Type under test."),
@@ -61,6 +68,7 @@ several_options = together(
 @problem_options
 @measure_options
 @several_options
+@click.option("--model", metavar="NAME", help="In place of PROBLEM: what stands for that reflectance model.")
 @click.option("--resume", is_flag=True, help="Go on from the rows that --out FILE holds.")
 @click.option("--against", type=click.Path(), metavar="FILE", help="Compare with older rows: what got worse. Exit 1.")
 @click.option("--format", "format_", default="text", type=click.Choice(["text", "json"]), show_default=True)
@@ -75,6 +83,7 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
     ratfit bench tanh --within 0 10                     on a finite part of an infinite domain
     ratfit bench eq21 --samples 1e9 --out rows.jsonl    interrupt it; --resume goes on
     ratfit bench eq21 --out new.jsonl --against rows.jsonl
+    ratfit bench --model cook-torrance --set alpha=0.1  a whole model, on pairs of directions
     ratfit bench "exp(x)" --on 0 1 --form 2/2 --value 0 --derivative 0 --derivative "0;order=2" --value 1 --derivative 1
     On several machines, K = 0 and 1:
     ratfit bench eq12 --samples 1e10 --coordinator 10.0.0.1:9876 --processes 2 --process K
@@ -82,8 +91,10 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
     from ratfit._setting import RANDOM
     from ratfit.report.rows import Book
 
-    found, shown = read_problem(problem, degree, options)
     values = settings_of(settings, RANDOM)
+    if options["model"] is not None:
+        return _bench_model(problem, degree, values, options)
+    found, shown = read_problem(problem, degree, options)
     names = [p.name for p in found.parameters]
     choice = {n: v for n, v in values.items() if n not in names}
     for name in (n for n, v in choice.items() if v == RANDOM):
@@ -99,8 +110,27 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
         return 1
     _begin(options)
     book = Book(options["out"], options["resume"])
-    plan = _planned(fit, shown, {n: v for n, v in values.items() if n in names}, options, book)
-    return _finish(plan, book, old, options)
+    asked = _jobs(fit, shown, {n: v for n, v in values.items() if n in names}, options)
+    return _finish(_planned(asked, _about(fit, shown), options, book), book, old, options)
+
+
+def _bench_model(problem: tuple[str, ...], degree: int | None, values: dict[str, str], options: dict[str, Any]) -> int:
+    """Measures what stands for a whole model, on pairs of directions."""
+    from ratfit._bench import model_jobs
+    from ratfit.report.rows import Book
+
+    measured = [name for name in ("exhaustive", "within", "peers") if options[name]]
+    given = [*stated_words(options).given(), *measured, *(["degree"] if degree is not None else [])]
+    aside = [*problem, *(f"--{name}" for name in given)]
+    if aside:
+        raise RatfitError(f"--model measures a whole model: leave {aside[0]} out")
+    old = _old_rows(options["against"])
+    _check_measuring(options)
+    _begin(options)
+    asked = model_jobs(options["model"], _numbers(values))
+    book, about = Book(options["out"], options["resume"]), {"fit": None, "command": _command(), "published": None}
+    on_pairs = options | {"sampling": options["sampling"] or "hemisphere"}
+    return _finish(_planned(asked, about, on_pairs, book), book, old, options)
 
 
 def _check_measuring(options: dict[str, Any]) -> None:
@@ -113,7 +143,7 @@ def _check_measuring(options: dict[str, Any]) -> None:
         raise RatfitError("--sampling exhaustive is said as --exhaustive")
     if "none" in options["backends"] and len(options["backends"]) > 1:
         raise RatfitError("--backend none is for the errors alone: leave the other --backend out, or none")
-    if options["exhaustive"] and options["sampling"] != "uniform":
+    if options["exhaustive"] and options["sampling"] is not None:
         raise RatfitError("--exhaustive is a sampling of its own: leave --sampling out")
     several = [options[name] is not None for name in ("coordinator", "processes", "process")]
     if any(several) and not all(several):
@@ -139,17 +169,16 @@ def _keep_for_results() -> None:
     sys.stdout = os.fdopen(ours, "w", encoding=sys.stdout.encoding)
 
 
-def _planned(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str, Any], book: Book) -> list[Planned]:
+def _planned(found: list[Job], about: dict[str, Any], options: dict[str, Any], book: Book) -> list[Planned]:
     from ratfit._bench import Measuring, is_timed
     from ratfit._sampling import check_protocol
     from ratfit.report.rows import Measurement, plan
 
     asked = SAMPLES if options["samples"] is None else options["samples"]
     samples = None if options["exhaustive"] else asked
-    sampling = "exhaustive" if options["exhaustive"] else options["sampling"]
+    sampling = "exhaustive" if options["exhaustive"] else options["sampling"] or "uniform"
     check_protocol(sampling, samples, options["seed"], options["dtype"])
-    how = Measuring(samples, options["seed"], sampling, options["dtype"])
-    found, backends, about = _jobs(fit, shown, given, options), _backends(options["backends"]), _about(fit, shown)
+    how, backends = Measuring(samples, options["seed"], sampling, options["dtype"]), _backends(options["backends"])
     titles = [f"{number}/{len(found)} {job.name} {dict(job.parameters)}" for number, job in enumerate(found, 1)]
     measurements = [
         Measurement(job, how, backends if is_timed(job) else (), title, about)
@@ -160,9 +189,8 @@ def _planned(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[
 
 def _jobs(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str, Any]) -> list[Job]:
     from ratfit._bench import jobs, peer_jobs
-    from ratfit._setting import RANDOM
 
-    values = {n: v if v == RANDOM else float(exact(v, f"--set {n}")) for n, v in given.items()}
+    values = _numbers(given)
     settings: Sequence[Any] = [values] if values else list(shown.settings) if shown else []
     ends = tuple(_finite(end) for end in options["within"] or ())
     found = jobs(fit, settings, (ends[0], ends[1]) if ends else None)
@@ -172,6 +200,13 @@ def _jobs(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str
     for name, reason in missing:
         print(f"ratfit: no {name}: {reason}", file=sys.stderr)
     return [*found, *peers]
+
+
+def _numbers(given: dict[str, str]) -> dict[str, Any]:
+    """The values of parameters as numbers, "random" as it is."""
+    from ratfit._setting import RANDOM
+
+    return {n: v if v == RANDOM else float(exact(v, f"--set {n}")) for n, v in given.items()}
 
 
 def _finite(text: str) -> float:

@@ -99,7 +99,7 @@ problem_options = together(
 def read_problem(problem: tuple[str, ...], degree: int | None, words: dict[str, Any]) -> tuple[Problem, Card | None]:
     """The problem that the words of a command name, and its card where it is one of the gallery."""
     text = one_word(problem)
-    stated = Words(**{k: words[k] for k in Words.__dataclass_fields__ if k in words})
+    stated = stated_words(words)
     if is_known(text):
         if stated.given():
             raise RatfitError(f"--{stated.given()[0]} completes an expression; {text} is a whole problem, leave it out")
@@ -114,6 +114,11 @@ def read_problem(problem: tuple[str, ...], degree: int | None, words: dict[str, 
     if not stated.given() and text.replace("-", "").replace("_", "").isalnum():
         return card(text).problem, None  # a lone word that is no name: the error offers the nearest names
     return problem_of_words(text, stated), None
+
+
+def stated_words(options: dict[str, Any]) -> Words:
+    """What the options say of a problem that is an expression."""
+    return Words(**{k: options[k] for k in Words.__dataclass_fields__ if k in options})
 
 
 def one_word(problem: tuple[str, ...]) -> str:

@@ -14,7 +14,7 @@ from ratfit._target import Parameter
 from ratfit.models.directions import LETTERS, as_directions, as_floats, check_directions, cosines, library, traced
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # a model is itself alone: so JAX may take it for the name of a function
 class Model:
     """A bidirectional reflectance distribution function (1/sr), without the cosine to the light.
 

@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 from ratfit._parse import RatfitError
-from ratfit.models import Model
+from ratfit.models import MODELS, Model
 from ratfit.models.albedo import albedo, angles, monte_carlo_albedo
 from ratfit.models.directions import R_DOT_V, V_PRIME, T, U, V, W
 from ratfit.models.lambert import LAMBERT
@@ -75,6 +75,25 @@ def test_both_ways_agree_for_an_elliptical_lobe(azimuth):
     exact = albedo(model, cosines, azimuth=azimuth, alpha=0.2)
     drawn = monte_carlo_albedo(model, cosines, azimuth=azimuth, alpha=0.2, samples=40_000, sampler=Blend(((GGX, {}),)))
     assert np.all(np.abs(exact.values - drawn.values) <= exact.errors + 5 * drawn.errors)
+
+
+WITHOUT_INTEGRAL = {"ward-third-form-as-printed", "schlick-as-printed", "schlick-double-as-printed"}
+
+
+@pytest.mark.parametrize("name", [name for name in MODELS if name not in WITHOUT_INTEGRAL])
+def test_both_ways_agree_for_every_model(name):
+    exact = albedo(MODELS[name], [0.8])
+    drawn = monte_carlo_albedo(MODELS[name], [0.8], samples=4000)
+    assert np.all(np.abs(exact.values - drawn.values) <= exact.errors + 5 * drawn.errors)
+
+
+@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
+def test_what_a_model_says_of_its_facets_and_its_sampler_fits_it(model):
+    own_names = {p.name for p in model.parameters}
+    if model.sampler is not None:
+        assert {p.name for p in named(model.sampler).pdf.parameters} <= own_names
+    if model.facets is not None:
+        assert model.facets.free_symbols <= {T, W, *model.parameters}
 
 
 def test_oren_nayar_at_normal_incidence_is_its_first_term():

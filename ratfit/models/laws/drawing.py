@@ -95,7 +95,7 @@ def agreement(exact: Albedo, drawn: Albedo, setting: Setting) -> Law:
     with np.errstate(invalid="ignore", divide="ignore"):
         apart = np.maximum(np.abs(drawn.values - exact.values) - exact.errors, 0)
         deviations = np.where(apart <= 1e-12, 0, apart / drawn.errors)
-    deviations = np.nan_to_num(deviations, nan=np.inf)
+    deviations = np.where(np.isnan(deviations), np.inf, deviations)
     at = int(np.argmax(deviations))
     place = {"view": degrees(exact.cosines[at]), **setting}
     remark = f"{drawn.values[at]:.4g} by samples, {exact.values[at]:.4g} by quadrature"

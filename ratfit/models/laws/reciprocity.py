@@ -13,6 +13,9 @@ PAIRS, SETTINGS = 4000, 24
 ROUNDING = 1e-9
 """What rounding may make of two equal reflectances, relative to them."""
 
+LEAST = 1e-290
+"""Nearly the smallest number that float64 has in full: what is below it has lost digits already."""
+
 
 def reciprocity(model: Model, fixed: Setting, seed: int) -> Law:
     """The greatest relative difference between f(V, L) and f(L, V) over random pairs and settings."""
@@ -22,8 +25,8 @@ def reciprocity(model: Model, fixed: Setting, seed: int) -> Law:
         there, back = model(view, light, **setting), model(light, view, **setting)
         greater = np.maximum(np.abs(there), np.abs(back))
         with np.errstate(invalid="ignore"):
-            difference = np.where(greater > 0, np.abs(there - back) / np.where(greater > 0, greater, 1), 0)
-        difference = np.nan_to_num(difference, nan=0.0)  # infinite both ways; the law of limits says so
+            difference = np.abs(there - back) / np.maximum(greater, LEAST)
+        difference = np.where(np.isnan(difference), 0.0, difference)  # infinite both ways; the law of limits says so
         at = int(np.argmax(difference))
         if difference[at] > worst:
             worst, place = float(difference[at]), {**pair_place(view[at], light[at]), **setting}

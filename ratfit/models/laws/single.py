@@ -29,7 +29,7 @@ def single(model: Model, fixed: Setting, seed: int) -> Law:
         found = model(view, light, **held).astype(float)
         with np.errstate(invalid="ignore"):
             error = np.abs(found - exact) / np.maximum(np.abs(exact), LEAST)
-        error = np.where(np.isfinite(exact), np.nan_to_num(error, nan=np.inf), 0)
+        error = np.where(np.isfinite(exact), np.where(np.isnan(error), np.inf, error), 0)
         beyond, count = beyond + int(np.sum(error > BOUND)), count + error.size
         at = int(np.argmax(error))
         if error[at] > worst:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 TOP = 1.6
-"""The greatest albedo that is drawn: some grow beyond all bounds."""
+"""The greatest albedo that is drawn, but for a curve that is above it everywhere: some grow beyond all bounds."""
 
 
 def plot_albedo(check: Check, axes: Axes | None = None) -> Axes:
@@ -42,8 +42,9 @@ def _new_axes() -> Axes:
 
 def _draw(axes: Axes, check: Check, is_ours: bool) -> None:
     bright = check.brightest
-    greatest = max(_greatest(check.albedo), _greatest(bright.albedo))
-    top = 1.05 * min(max(1.0, greatest), TOP) + 0.02
+    greatest = max(map(_greatest, _both(check)))
+    least = max(float(np.min(each.values, initial=np.inf, where=each.values >= 0)) for each in _both(check))
+    top = 1.05 * min(max(1.0, greatest), max(TOP, 1.5 * least if np.isfinite(least) else 0)) + 0.02
     axes.axhspan(1, max(top, 1.1), color=RED, alpha=0.08, linewidth=0)
     axes.axhline(1, color=RED, linewidth=0.8)
     (worst,) = axes.plot(*_curve(bright.albedo), color=BLUE, linestyle=(0, (6, 1.6)), linewidth=1.4)
@@ -72,6 +73,10 @@ def _draw(axes: Axes, check: Check, is_ours: bool) -> None:
     axes.set_title(plain(shortened(check.model.name, 80)))
     dress(axes)
     legend_below(axes, [line, worst, dots], is_ours)
+
+
+def _both(check: Check) -> tuple[Albedo, Albedo]:
+    return check.albedo, check.brightest.albedo
 
 
 def _curve(albedo: Albedo) -> tuple[Any, Any]:

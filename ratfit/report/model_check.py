@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ratfit.models import Model
@@ -17,6 +17,8 @@ from ratfit.report.text import aligned
 
 WIDTH = 110
 ANGLES_SHOWN = 8
+
+UNBROKEN = "\N{NO-BREAK SPACE}"
 
 MARKS = {HOLDS: "ok", FAILS: "FAILS", UNDECIDED: "open", NOT_APPLICABLE: "-"}
 ANGLES = ("view", "light", "view's azimuth", "azimuth between")
@@ -32,7 +34,7 @@ def check_text(check: Check) -> str:
         f"{p} = {check.fixed[p.name]:g}" if p.name in check.fixed else f"{p} in [{p.low}, {p.high}]"
         for p in model.parameters
     ]
-    lines += _wrapped("parameters", ", ".join(ranges)) if ranges else []
+    lines += _wrapped("parameters", _listed(ranges)) if ranges else []
     head = ["law", "verdict", "found", "bound", "what was measured"]
     table = [head, *([law.name, MARKS[law.verdict], *_numbers(law), _measured(law)] for law in check.laws)]
     lines += ["", *(f"  {line}" for line in aligned(table))]
@@ -107,7 +109,12 @@ def _about(law: Law) -> list[str]:
 
 def _place(place: Mapping[str, float]) -> str:
     angles = [f"{name} {place[name]:.4g} degrees" for name in ANGLES if name in place]
-    return ", ".join([*angles, *(f"{name} = {value:.4g}" for name, value in place.items() if name not in ANGLES)])
+    return _listed([*angles, *(f"{name} = {value:.4g}" for name, value in place.items() if name not in ANGLES)])
+
+
+def _listed(words: Sequence[str]) -> str:
+    """The words with commas, each to stay on one line."""
+    return ", ".join(each.replace(" ", UNBROKEN) for each in words)
 
 
 def _albedo_lines(check: Check) -> list[str]:
@@ -128,7 +135,7 @@ def _parts(albedo: Albedo) -> tuple[Any, Any, Any]:
 
 
 def _wrapped(label: str, text: str, indent: int = 14) -> list[str]:
-    lines = textwrap.wrap(text, WIDTH - indent) or [""]
+    lines = [line.replace(UNBROKEN, " ") for line in textwrap.wrap(text, WIDTH - indent)] or [""]
     return [f"  {label:<{indent - 2}}{lines[0]}", *(" " * indent + line for line in lines[1:])]
 
 

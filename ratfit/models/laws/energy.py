@@ -60,7 +60,8 @@ def energy(model: Model, found: Brightest) -> Law:
     place = {"view": degrees(found.albedo.cosines[at]), **found.setting}
     if model.reflectance.has(W):
         place = {"view's azimuth": math.degrees(found.azimuth), **place}
-    remark = f"quadrature, to {error:.1g}; {found.tried} settings"
+    how = f"quadrature, to {error:.1g}" if math.isfinite(error) else "no number"
+    remark = f"{how}; {found.tried} settings"
     return Law("energy", told, "greatest directional albedo", value, 1.0, place, remark)
 
 

@@ -215,8 +215,8 @@ NO_ANSWER = {"azimuth-as-printed"}
 """Cards that end with an honest no, which is what they are there to show."""
 
 
-SLOW = {"azimuth", "beckmann-general", "beckmann-quartic"}
-"""Cards whose objects are like normal-density's and take their seconds."""
+SLOW = {"azimuth", "beckmann-general", "beckmann-quartic", "dielectric"}
+"""Cards whose objects are like normal-density's or ggx-masking-ends' and take their seconds."""
 
 
 @pytest.mark.parametrize("name", [c.name for c in cards() if c.name not in SLOW])

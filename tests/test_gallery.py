@@ -17,17 +17,23 @@ EXPECTED = {
     "azimuth": ("unique", "nonlinear", ""),
     "beckmann": ("unique", "polynomial", ""),
     "beckmann-general": ("unique", "nonlinear", ""),
+    "beckmann-masking": ("unique", "linear", ""),
     "bhaskara": ("unique", "linear", ""),
     "bias": ("unique", "linear", ""),
+    "conductor": ("family", "power", "n"),
     "fresnel": ("family", "power", "n"),
     "gain": ("unique", "linear", ""),
+    "ggx-masking": ("unique", "linear", ""),
+    "ggx-masking-ends": ("unique", "linear", ""),
     "langevin": ("unique", "linear", ""),
     "pade-exp": ("unique", "linear", ""),
     "phong": ("unique", "linear", ""),
+    "phong-density": ("unique", "polynomial", ""),
     "saturation": ("unique", "linear", ""),
     "sin": ("unique", "linear", ""),
     "sin-ode": ("unique", "linear", ""),
     "smith": ("unique", "linear", ""),
+    "smith-1967": ("unique", "linear", ""),
     "tanh": ("unique", "linear", ""),
     "zenith": ("unique", "polynomial", ""),
 }
@@ -36,30 +42,50 @@ EXPECTED = {
 # target and formula alike, would agree with itself.
 x, v, t, u, m, r, a, f, p, w, k = sp.symbols("x v t u m r a f p w k", positive=True)
 n = sp.Symbol("n", positive=True)
+alpha, eta, kappa = sp.symbols("alpha eta kappa", positive=True)
 _u, _k, _w = -(sp.pi**2) / 4, sp.sqrt(2 * m**2 / sp.pi), t + m - 1
+
+
+def _reaching_one(end, slope, bend):
+    """The fraction of degree 2 that is 1 at the end with slope 0, and begins as slope*a - bend*a**2.
+
+    1 - G is (1 - z*a)**2 over 1 + q*a + r*a**2 with z = 1/end, as it vanishes twice there; its series is
+    1 - (2*z + q)*a + (z**2 + 2*z*q + q**2 - r)*a**2.
+    """
+    z = 1 / end
+    q = slope - 2 * z
+    return 1 - (1 - z * a) ** 2 / (1 + q * a + ((z + q) ** 2 - bend) * a**2)
+
+
 PRINTED = {
     "arctan": x / (1 + (4 / sp.pi - 1) * x**2),
     "azimuth": p / (p**2 - p**2 * w**2 + w**2),
     "beckmann": m**3 * _w / (t * (m * _w**2 - _w**2 + m**2) ** 2),
     "beckmann-general": m**3 * _w / (t * (m * _w**2 - _w**2 + m**2) ** 2),
+    "beckmann-masking": _reaching_one(sp.Rational(3, 2), 2 * sp.sqrt(sp.pi), 2 * sp.pi),
     "bhaskara": 16 * x * (sp.pi - x) / (5 * sp.pi**2 - 4 * x * (sp.pi - x)),
     "bias": t / ((1 / a - 2) * (1 - t) + 1),
+    "conductor": ((eta - 1) ** 2 + kappa**2 + 4 * eta * (1 - u) ** n) / ((eta + 1) ** 2 + kappa**2),
     "fresnel": f + (1 - f) * (1 - u) ** n,
     "gain": t / ((1 / a - 2) * (1 - 2 * t) + 1),
+    "ggx-masking": v / (v * (1 - alpha / 2) + alpha / 2),
+    "ggx-masking-ends": 1 / (1 + alpha**2 * (1 - v) / (2 * v * (alpha * (1 - v) + v))),
     "langevin": x * (x + 2) / (x**2 + 3 * x + 6),
     "pade-exp": (12 + 6 * x + x**2) / (12 - 6 * x + x**2),
     "phong": t / (n - n * t + t),
+    "phong-density": 8 * (n + 2) * t**2 / (sp.pi * ((n + 2) * (1 - t**4) + 4 * t**4) ** 2),
     "saturation": k * x / (1 + k * x),
     "sin-ode": x * (1 - 7 * x**2 / 60) / (1 + x**2 / 20),
     "sin": x * (_u + x) / (_u + (sp.pi + _u) * x),
     "smith": v / (v - _k * v + _k),
+    "smith-1967": _reaching_one(sp.Rational(19, 10), sp.sqrt(sp.pi), sp.pi - 2),
     "tanh": x * (3 + x) / (3 + x + x**2),
     "zenith": r / (1 + r * t**2 - t**2) ** 2,
 }
 
 
 # Cards without a published formula, or without an answer; each has a test of its own below.
-OTHERS = {"azimuth-as-printed", "beckmann-quartic", "normal-density"}
+OTHERS = {"azimuth-as-printed", "beckmann-quartic", "dielectric", "normal-density"}
 
 
 def test_the_tables_name_every_card():

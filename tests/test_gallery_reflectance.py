@@ -1,0 +1,150 @@
+"""Reflectance in the gallery: exact functions are those of `ratfit.brdf`, and fits are as near as their cards note.
+
+Both sides of an equation are typed by hand in forms of their own, the one for calculus, the other for arrays.
+"""
+
+from dataclasses import replace
+from functools import cache
+
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+
+import ratfit as rf
+from ratfit.brdf import distribution, fresnel, masking
+from ratfit.gallery import card
+
+DIGITS = 40
+PLACES = [sp.Rational(1, 50), sp.Rational(3, 10), sp.Rational(7, 10), sp.Rational(49, 50)]
+GOLD = {"eta": "0.29", "kappa": "2.863"}
+
+
+derived = cache(rf.derive)
+
+
+def cosine(a):
+    """v of a = v/sqrt(1 - v**2), the argument of masking functions at the roughness alpha = 1."""
+    return a / sp.sqrt(1 + a**2)
+
+
+# name of the card, which of its functions (None: the target, "": the published one, else a reference), the exact
+# factor of the variable and of parameters in the order given, their values
+FACTORS = [
+    ("azimuth", "", distribution.azimuth, {"p": "1/5"}),
+    ("azimuth-as-printed", "", distribution.azimuth_as_printed, {"p": "1/5"}),
+    ("beckmann", None, lambda t, m: sp.pi * distribution.beckmann(t, m), {"m": "1/3"}),
+    ("beckmann-general", None, lambda t, m: sp.pi * distribution.beckmann(t, m), {"m": "1/3"}),
+    ("beckmann-quartic", None, lambda t, m: sp.pi * distribution.beckmann(t, m), {"m": "1/3"}),
+    ("beckmann-masking", None, lambda a: masking.beckmann(cosine(a), sp.S.One), {}),
+    ("beckmann-masking", "walter-2007-rational", lambda a: masking.beckmann_rational(cosine(a), sp.S.One), {}),
+    ("conductor", None, fresnel.conductor, GOLD),
+    ("conductor", None, fresnel.conductor, {"eta": "2.94", "kappa": "2.99"}),
+    ("conductor", "", lambda u, eta, kappa, n: fresnel.lazanyi(u, eta, kappa), GOLD | {"n": "5"}),
+    ("dielectric", None, fresnel.dielectric, {"eta": "3/2"}),
+    ("fresnel", "", fresnel.schlick, {"f": "1/25", "n": "5"}),
+    ("fresnel", "glass", lambda u: fresnel.dielectric(u, sp.Rational(3, 2)), {}),
+    ("fresnel", "gold", lambda u: fresnel.conductor(u, sp.Rational("0.29"), sp.Rational("2.863")), {}),
+    ("ggx-masking", None, masking.ggx, {"alpha": "1/3"}),
+    ("ggx-masking-ends", None, masking.ggx, {"alpha": "1/3"}),
+    ("phong-density", None, distribution.phong, {"n": "7"}),
+    ("smith", None, masking.smith_as_printed, {"m": "1/5"}),
+    ("smith", "", masking.schlick, {"m": "1/5"}),
+    ("smith", "smith-1967", masking.smith, {"m": "1/5"}),
+    ("smith", "walter-2007", lambda v, m: masking.beckmann(v, sp.sqrt(2) * m), {"m": "1/5"}),
+    ("smith-1967", None, lambda a: masking.smith(cosine(a), 1 / sp.sqrt(2)), {}),
+    ("zenith", "", distribution.zenith, {"r": "1/5"}),
+    ("zenith", "beckmann", lambda t, r: sp.pi * distribution.beckmann(t, sp.sqrt(r)), {"r": "1/5"}),
+]
+
+
+@pytest.mark.parametrize("name, which, factor, values", FACTORS, ids=[f"{row[0]}:{row[1]}" for row in FACTORS])
+def test_a_card_and_an_exact_factor_are_one_function(name, which, factor, values):
+    shown = card(name)
+    if which is None:
+        formula, own = shown.problem.target.expression, {}
+    elif which == "":
+        formula, own = shown.published, {}
+    else:
+        reference = next(r for r in shown.problem.references if r.name == which)
+        formula, own = reference.expression, reference.parameters
+    numbers = [sp.Rational(text) for text in values.values()]
+    by_name = dict(zip(values, numbers, strict=True))
+    formula = formula.subs(own).subs({s: by_name[s.name] for s in formula.free_symbols if s.name in by_name})
+    for place in PLACES:
+        ours, exact = formula.subs(shown.problem.variable, place), factor(place, *numbers)
+        assert abs(sp.N(ours - exact, DIGITS)) < 10.0 ** (5 - DIGITS), place
+
+
+def transparent(u, eta):
+    """Snell's law and the two amplitudes, s and p, in mpmath."""
+    inside = mpmath.sqrt(1 - (1 - u * u) / eta**2)
+    s, p = (u - eta * inside) / (u + eta * inside), (eta * u - inside) / (eta * u + inside)
+    return (s * s + p * p) / 2
+
+
+@pytest.mark.parametrize("eta, distance, of_eq_15", [("3/2", 0.0069, 0.036), ("2.417", 0.0029, 0.075)])
+def test_the_fraction_for_glass_and_diamond(eta, distance, of_eq_15):
+    """Three terms at 0 and two at 1 of power series that mpmath takes from Snell's law; and how near it is."""
+    problem = card("dielectric").problem
+    target = problem.target.expression.subs(dict.fromkeys(problem.parameters, sp.Rational(eta)))
+    fit = rf.derive(replace(problem, parameters=(), target=replace(problem.target, expression=target)))
+    assert fit.status == "unique" and all(c.holds for c in fit.conditions)
+    function = sp.lambdify(problem.variable, fit.expression, "mpmath")
+    with mpmath.workdps(60):
+        index = mpmath.mpf(sp.Rational(eta).p) / sp.Rational(eta).q
+        for place, terms in ((0, 3), (1, 2)):
+            ours = mpmath.taylor(function, place, terms - 1)
+            exact = mpmath.taylor(lambda u: transparent(u, index), place, terms - 1)
+            assert max(abs(x - y) for x, y in zip(ours, exact, strict=True)) < 1e-20
+    f, places = ((float(index) - 1) / (float(index) + 1)) ** 2, np.linspace(0, 1, 501)
+    exact = np.array([float(transparent(u, index)) for u in places])
+    assert float(f"{np.max(np.abs(fit(places) - exact)):.2g}") == distance
+    assert float(f"{np.max(np.abs(f + (1 - f) * (1 - places) ** 5 - exact)):.2g}") == of_eq_15
+
+
+# name, parameters, the domain's part that is looked at, the greatest distance in parts of the peak that the card's note
+# gives, to its last digit
+NOTED = [
+    ("ggx-masking", {"alpha": 0.05}, (0, 1), 0.15),
+    ("ggx-masking", {"alpha": 0.5}, (0, 1), 0.066),
+    ("ggx-masking-ends", {"alpha": 0.05}, (0, 1), 0.025),
+    ("beckmann-masking", {}, (0, 6), 0.0047),
+    ("smith-1967", {}, (0, 6), 0.0065),
+    ("conductor", {"eta": 0.29, "kappa": 2.863}, (0, 1), 0.019),
+    ("conductor", {"eta": 0.70, "kappa": 2.704}, (0, 1), 0.031),
+    ("conductor", {"eta": 2.94, "kappa": 2.99}, (0, 1), 0.18),
+    ("phong-density", {"n": 2.0}, (0, 1), 0.0),
+    ("phong-density", {"n": 5.0}, (0, 1), 0.084),
+    ("phong-density", {"n": 100.0}, (0, 1), 0.16),
+]
+
+
+@pytest.mark.parametrize("name, values, part, distance", NOTED, ids=[f"{row[0]}:{row[1]}" for row in NOTED])
+def test_a_fit_is_as_near_as_its_card_notes(name, values, part, distance):
+    problem = card(name).problem
+    x = np.linspace(*part, 5003)[1:-1]
+    symbols = [problem.variable, *problem.parameters]
+    exact = rf.lower(problem.target.expression, symbols)(x, *(values[s.name] for s in problem.parameters))
+    error = np.max(np.abs(derived(name)(x, **values) - exact)) / np.max(exact)
+    assert float(f"{error:.2g}") == pytest.approx(distance, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["beckmann-masking", "smith-1967"])
+def test_masking_comes_to_one_from_below(name):
+    """Increasing, never above 1, and 1 for good from the end of its support on."""
+    fit = derived(name)
+    end = float(fit.problem.form.support[1])
+    found = fit(np.linspace(0, end, 20001))
+    assert np.all(np.diff(found) > -1e-15) and found.max() <= 1 + 1e-15 and found[-1] == pytest.approx(1, abs=1e-15)
+    assert fit(end + 1e-9) == fit(1e9) == 1
+
+
+@pytest.mark.parametrize("n", [2, 7, 100])
+def test_the_fit_of_phongs_distribution_is_normalised(n):
+    fit = derived("phong-density")
+    values = dict.fromkeys(fit.problem.parameters, n)
+    density = sp.lambdify(fit.problem.variable, fit.expression.subs(values), "mpmath")
+    total = mpmath.quad(lambda t: 2 * mpmath.pi * t * density(t), [0, 0.5, 0.9, 1])
+    assert abs(total - 1) < 1e-12
+    assert abs(density(mpmath.mpf(1)) - (n + 2) / (2 * mpmath.pi)) < 1e-12 * n

@@ -53,6 +53,8 @@ def cli(context: click.Context) -> None:
     ratfit derive "sin(x)" --on 0 pi/2 --form 2/1 --value 0 --derivative 0 --value pi/2 --derivative pi/2
     ratfit bench eq12                 its error and its speed
     ratfit study "tanh(x)" --on 0 oo  what is exact about a function, as conditions for derive
+    ratfit check-model schlick-24-30  the laws of a whole reflectance model
+    ratfit claims S                   what the 1994 paper states, decided
     ratfit gallery                    every problem that comes with ratfit
     """
     if context.invoked_subcommand is None:

@@ -41,6 +41,7 @@ FACTORS = [
     ("conductor", None, fresnel.conductor, GOLD),
     ("conductor", None, fresnel.conductor, {"eta": "2.94", "kappa": "2.99"}),
     ("conductor", "", lambda u, eta, kappa, n: fresnel.lazanyi(u, eta, kappa), GOLD | {"n": "5"}),
+    ("conductor-ends", "iron", lambda u: fresnel.conductor(u, sp.Rational("2.94"), sp.Rational("2.99")), {}),
     ("dielectric", None, fresnel.dielectric, {"eta": "3/2"}),
     ("fresnel", "", fresnel.schlick, {"f": "1/25", "n": "5"}),
     ("fresnel", "glass", lambda u: fresnel.dielectric(u, sp.Rational(3, 2)), {}),
@@ -76,11 +77,11 @@ def test_a_card_and_an_exact_factor_are_one_function(name, which, factor, values
         assert abs(sp.N(ours - exact, DIGITS)) < 10.0 ** (5 - DIGITS), place
 
 
-def transparent(u, eta):
-    """Snell's law and the two amplitudes, s and p, in mpmath."""
-    inside = mpmath.sqrt(1 - (1 - u * u) / eta**2)
-    s, p = (u - eta * inside) / (u + eta * inside), (eta * u - inside) / (eta * u + inside)
-    return (s * s + p * p) / 2
+def fresnel_factor(u, index):
+    """Snell's law and the two amplitudes of light, s and p, in mpmath; the index may be complex."""
+    inside = mpmath.sqrt(index**2 - 1 + u * u)
+    s, p = (u - inside) / (u + inside), (index**2 * u - inside) / (index**2 * u + inside)
+    return (abs(s) ** 2 + abs(p) ** 2) / 2
 
 
 @pytest.mark.parametrize("eta, distance, of_eq_15", [("3/2", 0.0069, 0.036), ("2.417", 0.0029, 0.075)])
@@ -95,12 +96,40 @@ def test_the_fraction_for_glass_and_diamond(eta, distance, of_eq_15):
         index = mpmath.mpf(sp.Rational(eta).p) / sp.Rational(eta).q
         for place, terms in ((0, 3), (1, 2)):
             ours = mpmath.taylor(function, place, terms - 1)
-            exact = mpmath.taylor(lambda u: transparent(u, index), place, terms - 1)
+            exact = mpmath.taylor(lambda u: fresnel_factor(u, index), place, terms - 1)
             assert max(abs(x - y) for x, y in zip(ours, exact, strict=True)) < 1e-20
     f, places = ((float(index) - 1) / (float(index) + 1)) ** 2, np.linspace(0, 1, 501)
-    exact = np.array([float(transparent(u, index)) for u in places])
+    exact = np.array([float(fresnel_factor(u, index)) for u in places])
     assert float(f"{np.max(np.abs(fit(places) - exact)):.2g}") == distance
     assert float(f"{np.max(np.abs(f + (1 - f) * (1 - places) ** 5 - exact)):.2g}") == of_eq_15
+
+
+@pytest.mark.parametrize("name, distance", [("gold", 0.0009), ("copper", 0.00025), ("iron", 0.008)])
+def test_metals_have_the_numbers_that_their_card_states(name, distance):
+    """f, n, g and h from power series of Snell's law with a complex index; and how near the fraction is."""
+    fit = derived("conductor-ends")
+    metal = next(r for r in fit.problem.references if r.name == name)
+    values = {s.name: value for s, value in metal.parameters.items()}
+    with mpmath.workdps(60):
+        of = {key: mpmath.mpmathify(sp.N(value, 60)) for key, value in values.items()}
+        index, rise = mpmath.mpc(of["eta"], of["kappa"]), 1 - of["f"]
+        grazing = mpmath.taylor(lambda u: fresnel_factor(u, index), 0, 2)
+        normal = mpmath.taylor(lambda u: fresnel_factor(u, index), 1, 2)
+        stated = [1, -of["n"] * rise, of["g"] * of["n"] ** 2 * rise / 2, of["f"], 0, of["h"] * rise / 2]
+        assert max(abs(x - y) for x, y in zip(grazing + normal, stated, strict=True)) < 1e-20
+    assert all(p.low <= of[p.name] <= p.high for p in fit.problem.parameters)
+    places = np.linspace(0, 1, 501)
+    exact = np.array([float(fresnel_factor(u, complex(index))) for u in places])
+    found = fit(places, **{p.name: float(of[p.name]) for p in fit.problem.parameters})
+    assert float(f"{np.max(np.abs(found - exact)):.2g}") == distance
+
+
+def test_no_metal_within_the_ranges_meets_a_pole():
+    fit = derived("conductor-ends")
+    axes = [np.linspace(float(p.low), float(p.high), 13) for p in fit.problem.parameters]
+    below = rf.lower(sp.fraction(fit.expression)[1], [*fit.problem.parameters, fit.problem.variable])
+    found = below(*np.meshgrid(*axes, np.linspace(0, 1, 41), indexing="ij", sparse=True))
+    assert np.min(found) > 0 or np.max(found) < 0
 
 
 # name, parameters, the domain's part that is looked at, the greatest distance in parts of the peak that the card's note

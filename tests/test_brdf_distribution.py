@@ -289,7 +289,9 @@ def smooth(name, dtype):
 
 
 TYPED = [(name, np.float64) for name in (*PRINTED, *LIGHT)]
-TYPED += [(name, np.float32) for name, _ in TYPED if not name.endswith("printed")]  # these share the code of the others
+TYPED += [  # what is printed shares the code of the others
+    pytest.param(name, np.float32, marks=pytest.mark.thorough) for name, _ in TYPED if not name.endswith("printed")
+]
 
 
 @pytest.mark.parametrize(("name", "dtype"), TYPED)

@@ -406,7 +406,7 @@ def sloped(name, values):
     return jax.vmap(jax.value_and_grad(lambda *x: single(*x), argnums=tuple(range(len(values)))))(*values)
 
 
-@pytest.mark.parametrize("dtype", ["float32", "float64"])
+@pytest.mark.parametrize("dtype", [pytest.param("float32", marks=pytest.mark.thorough), "float64"])
 def test_nor_is_one_on_jax_and_gradients_are_finite_and_right(dtype):
     """Gradients where no square underflows. All functions are compiled at once: one by one takes twice as long."""
     points = {name: corners(name, dtype) for name in CORNERS}

@@ -322,7 +322,9 @@ def test_jit_of_float32_is_the_same(name):
     np.testing.assert_allclose(found, named(name)(edge[:, None], edge[None]), rtol=1e-4)
 
 
-@pytest.mark.parametrize("name", ["cook-torrance-optimised", "schlick-conserving"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("cook-torrance-optimised", marks=pytest.mark.thorough), "schlick-conserving"]
+)
 def test_gradients_are_finite_and_parameters_may_be_traced(name):
     model = named(name)
     view, light = (jnp.asarray(np.concatenate([directions(20, seed), EDGE[[0, 3, 4, 5]]])) for seed in (7, 8))
@@ -471,6 +473,7 @@ def towards(v, phi):
 GRAZING = [1e-4, 0.02, 0.1, 0.3, 0.6, 1.0]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("p", [0.1, 0.3, 1.0])
 @pytest.mark.parametrize("r", [1e-3, 0.02, 0.1, 0.3, 0.6, 0.9])
 def test_the_conserving_model_conserves(r, p):

@@ -80,6 +80,7 @@ def test_both_ways_agree_for_an_elliptical_lobe(azimuth):
 WITHOUT_INTEGRAL = {"ward-third-form-as-printed", "schlick-as-printed", "schlick-double-as-printed"}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", [name for name in MODELS if name not in WITHOUT_INTEGRAL])
 def test_both_ways_agree_for_every_model(name):
     exact = albedo(MODELS[name], [0.8])

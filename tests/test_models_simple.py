@@ -377,6 +377,7 @@ DIFFERENTIATED = (
 )  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", DIFFERENTIATED)
 def test_gradients_are_finite(name):
     """In float32, whose range is the narrower one, and from a cosine of 1e-5 to the horizon on."""

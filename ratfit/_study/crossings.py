@@ -116,6 +116,8 @@ def _is_broken(number: Number, place: mpmath.mpf) -> bool:
 def _scan(number: Number, nodes: Sequence[mpmath.mpf]) -> Scan:
     with mpmath.workdps(DIGITS):
         values = [(place, value) for place in nodes if (value := number(place)) is not None]
+    least = max((abs(v) for _, v in values), default=mpmath.mpf(0)) * mpmath.mpf(10) ** (20 - DIGITS)
+    values = [(p, mpmath.mpf(0) if abs(v) < least and _is_rounding(number, p, v) else v) for p, v in values]
     trusted = [(p, v) for p, v in values if v != 0]
     found: list[Crossing] = []
     brackets = [(a, b) for (a, u), (b, v) in pairwise(trusted) if (u < 0) != (v < 0)]
@@ -123,6 +125,13 @@ def _scan(number: Number, nodes: Sequence[mpmath.mpf]) -> Scan:
         if len(found) < MOST and (crossing := _narrowed(number, low, high)) is not None:
             found.append(crossing)
     return Scan(tuple(found), tuple((p, int(mpmath.sign(v))) for p, v in values), len(found) == MOST < len(brackets))
+
+
+def _is_rounding(number: Number, place: mpmath.mpf, value: mpmath.mpf) -> bool:
+    """Whether more digits leave nothing of a value: far out 1 - exp(-x**2) is 1 to all digits, and its slope noise."""
+    with mpmath.workdps(2 * WORK):
+        finer = number(place)
+    return finer is None or abs(finer - value) > abs(finer) / 2
 
 
 def _narrowed(number: Number, low: mpmath.mpf, high: mpmath.mpf) -> Crossing | None:

@@ -180,6 +180,14 @@ def test_what_is_not_true_is_not_claimed(expression, low, high, never):
         assert text not in texts
 
 
+def test_rounding_far_out_is_no_change_of_sign():
+    """The slope is (1 + 2*x**2)*exp(-x**2) over a square: positive, but a difference that is noise from x = 11 on."""
+    found = studied("x/(x+exp(-x**2))", "0", "oo")
+    assert [fact.text for fact in found.of("monotonicity")] == ["increasing on [0, oo]"]
+    assert not any("again and again" in fact.text for fact in found.facts)
+    assert not any(fact.text.startswith("inflection f(1") for fact in found.facts)
+
+
 def test_time_is_kept():
     import time
 

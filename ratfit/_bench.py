@@ -86,6 +86,9 @@ def jobs(
     if not against:
         raise RatfitError(f"{problem.name} has nothing exact to measure against: add a target, or a [[reference]]")
     given = {r.name: {s.name for s in r.parameters} for r in problem.references}
+    for name in dict.fromkeys(name for values in settings for name in values):
+        if all(name in given.get(reference or "", ()) for reference in against):
+            raise RatfitError(f"{problem.name}: every reference says {name} itself: leave {name} out")
     found = []
     for reference in against:
         for values in settings or _ends_and_middle(fit):

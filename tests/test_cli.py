@@ -70,6 +70,7 @@ BAD = [
     (["derive", "eq19", "--set", "M=1/3"], "did you mean 'm'?"),
     (["derive", "eq15", "--seed", "1.5"], "as 1000000 or 1e9 is"),
     (["bench", "eq15", "--set", "n=foo"], "as in n=1/3 (a parameter's value may also be random)"),
+    (["bench", "eq15", "--set", "f=0.9"], "every reference says f itself"),
     (["bench", "eq15", "--set", "n=random"], "a parameter alone is drawn at random"),
     (["bench", "eq19", "--set", "m=rnd"], "did you mean 'random'?"),
     (["bench", "eq15", "--set", "q=1"], "no parameter (free: n; parameters: f); leave it out"),

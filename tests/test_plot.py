@@ -364,6 +364,14 @@ def test_an_honest_no_has_no_picture(tmp_path, capsys):
     assert "no answer" in out and "no picture" in err and not file.exists()
 
 
+def test_a_family_is_an_answer_without_a_picture(tmp_path, capsys):
+    file = tmp_path / "family.svg"
+    words = ["derive", "exp(x)", "--on", "0", "1", "--form", "1/0", "--value", "0", "--plot", str(file)]
+    assert status(words) == 0
+    out, err = capsys.readouterr()
+    assert "family" in out and "no picture" in err and "--set" in err and not file.exists()
+
+
 @pytest.mark.parametrize(
     ("words", "fragment"),
     [
@@ -371,7 +379,8 @@ def test_an_honest_no_has_no_picture(tmp_path, capsys):
         (["derive", "eq19", "--plot", "missing/f.svg"], "no folder"),
         (["derive", "eq19", "--reference", "walter-2007"], "--plot"),
         (["derive", "eq15", "--plot", "f.svg", "--reference", "golt"], "gold"),
-        (["derive", "exp(x)", "--on", "0", "1", "--form", "1/0", "--value", "0", "--plot", "f.svg"], "--set"),
+        (["derive", "eq15", "--plot", "f.svg", "--reference", "gold", "--set", "f=0.9"], "leave --set f out"),
+        (["derive", "eq19", "--plot", ""], "something.svg"),
     ],
     ids=lambda words: " ".join(words)[:40] if isinstance(words, list) else "",
 )

@@ -10,7 +10,7 @@ import click
 
 from ratfit._fit import Fit
 from ratfit._inline import settings_of
-from ratfit._parse import RatfitError
+from ratfit._parse import RatfitError, nearest
 from ratfit._problem import Problem
 from ratfit._problem_file import problem_of
 from ratfit._problem_text import at_parameters, to_tables
@@ -38,32 +38,46 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     ratfit derive eq15 --plot gold.svg --reference gold
     ratfit derive "t**n" --parameter n=1:1000 --on 0 1 --form 1/1 --value 0 --value 1 --derivative 1
     """
-    if options["plot"]:
+    if options["plot"] is not None:
         picture_format(options["plot"])
     elif options["reference"]:
         raise RatfitError("--reference says what a picture compares with: give --plot FILE too")
     found, shown = read_problem(problem, degree, options)
-    there = _with_settings(found, settings_of(settings))
+    values = settings_of(settings)
+    _check_reference(found, options["reference"], values)
+    there = _with_settings(found, values)
     if there.parameters != found.parameters:
         shown = None  # what is published has the parameters as symbols
     fit = derived(there, options)
     if options["unique"] and fit.status in ("family", "several"):
         fit = _refused(fit)
-    if options["plot"]:
-        _write_picture(fit, options["plot"], options["reference"])
     write(rendered(fit, shown, options["format_"]), options["out"])
+    if options["plot"] is not None:
+        _write_picture(fit, options["plot"], options["reference"])
     for line in fit.advice:
         print(f"ratfit: {line}", file=sys.stderr)
     return 0 if fit.expression is not None else 1
 
 
 def _write_picture(fit: Fit, file: str, reference: str | None) -> None:
-    if fit.expression is None:
-        print(f"ratfit: there is no fit, and so no picture in {file}", file=sys.stderr)
+    free = ", ".join(symbol.name for symbol in fit.free if symbol not in fit.choice)
+    if fit.expression is None or free:
+        why = f"{free} is still free (--set gives it a value)" if free else "there is no fit"
+        print(f"ratfit: {why}, and so there is no picture in {file}", file=sys.stderr)
         return
     from ratfit.plot import plot_fit
 
     write_picture(plot_fit(fit, reference=reference).curves.figure, file)  # type: ignore[arg-type]  # a Figure of its own
+
+
+def _check_reference(problem: Problem, name: str | None, values: dict[str, str]) -> None:
+    """Before any work: a picture's reference is one of the problem's, and says some parameters itself."""
+    known = [each.name for each in problem.references]
+    if name is not None and name not in known:
+        raise RatfitError(f"no reference {name!r}{nearest(name, known)}; there is: {', '.join(known) or 'none'}")
+    said = {symbol.name for each in problem.references if each.name == name for symbol in each.parameters}
+    for parameter in said & set(values):
+        raise RatfitError(f"the reference {name} says {parameter} itself: leave --set {parameter} out")
 
 
 def _with_settings(problem: Problem, settings: dict[str, str]) -> Problem:

@@ -14,6 +14,8 @@ from ratfit.brdf import distribution as D
 from ratfit.brdf import roughness
 from ratfit.brdf.interior import interior
 
+pytestmark = pytest.mark.thorough  # long sweeps of formulas that seldom change
+
 LETTERS = sp.symbols("t w a b", real=True)  # of arrays: nothing may be known of them
 t, w, a, b, c = sp.symbols("t w a b c", positive=True)  # of proofs
 

@@ -16,6 +16,8 @@ from ratfit._lower import lower
 from ratfit._parse import RatfitError
 from ratfit.brdf import fresnel, metals
 
+pytestmark = pytest.mark.thorough  # long sweeps of formulas that seldom change
+
 U, ETA, KAPPA, F, N = sp.symbols("u eta kappa f n", real=True)
 
 COSINES = (0.0, 1e-30, 1e-8, 1e-3, 0.1, 0.3, 0.5, 0.6, 0.75, 0.9, 0.99, 1 - 2.0**-53, 1.0)

@@ -16,6 +16,8 @@ from ratfit._lower import lower
 from ratfit.brdf import masking
 from ratfit.brdf.interior import interior
 
+pytestmark = pytest.mark.thorough  # long sweeps of formulas that seldom change
+
 v, v_prime, t, u, rough = sp.symbols("v v_prime t u rough", real=True)
 ULP = mpf(2) ** -52
 

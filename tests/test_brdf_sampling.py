@@ -13,6 +13,8 @@ from ratfit._lower import lower
 from ratfit.brdf import distribution as D
 from ratfit.brdf import roughness, sampling
 
+pytestmark = pytest.mark.thorough  # long sweeps of formulas that seldom change
+
 a, b, p, t, u, v, v_prime, w, phi, rough = sp.symbols("a b p t u v v_prime w phi rough", real=True)
 F, G = sp.symbols("F G", real=True)
 

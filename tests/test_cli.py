@@ -439,6 +439,7 @@ def test_a_finished_row_leaves_no_state_and_nothing_to_compare_is_no_success(run
     assert status == 1 and "nothing could be compared" in out
 
 
+@pytest.mark.thorough
 def test_bench_draws_parameters_and_shows_peers(run):
     status, out, _ = run("bench", "eq19", "--samples", "1000", "--set", "m=random", "--backend", "none")
     assert status == 0 and "m=0.01..0.5" in out

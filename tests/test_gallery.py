@@ -127,6 +127,7 @@ def test_a_normal_density_by_its_peak_and_two_moments():
         assert abs(sp.N(fit.expression.subs(x, sp.Rational(7, 5)), 45) - true) < 1e-40
 
 
+@pytest.mark.thorough
 def test_another_fraction_keeps_the_conditions_of_eq_21():
     """With c = m**3/(1 - z**2), b = -z**2*c/m**4 the integral is artanh(z)*(1 - z**2)/(z*m), which must be 1."""
     fit = rf.derive("beckmann-quartic")

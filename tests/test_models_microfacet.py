@@ -16,6 +16,8 @@ from ratfit.models.directions import T, V, W
 from ratfit.models.he import HE
 from ratfit.models.schlick import SCHLICK, schlick
 
+pytestmark = pytest.mark.thorough  # long sweeps of formulas that seldom change
+
 OURS = [*COOK_TORRANCE, *HE, *SCHLICK, *conserving.CONSERVING]
 NORMAL = np.array([0.0, 0.0, 1.0])
 

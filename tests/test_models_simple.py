@@ -15,6 +15,8 @@ from ratfit._parse import RatfitError
 from ratfit.models import MODELS, named, tone, toon
 from ratfit.models.directions import R_DOT_V, cosines
 
+pytestmark = pytest.mark.thorough  # long sweeps of formulas that seldom change
+
 # In print with a cosine to the light in them, which the value is without: no law holds for them.
 SCANLINE = {
     "oren-nayar-as-printed", "phong-as-printed", "blinn-as-printed", "ward-third-form-as-printed",

@@ -59,6 +59,7 @@ def test_pairs_are_uniform_over_the_hemisphere_and_independent(pairs):
     assert np.mean(np.arccos(found["w"])) == pytest.approx(np.pi / 4, abs=4 * np.pi / 4 / np.sqrt(3 * SAMPLES))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", STAND_INS)
 def test_errors_are_those_of_the_models_on_directions(name, pairs):
     """The models called on directions, not their formulas in cosines: an independent way to the same numbers."""

@@ -15,7 +15,7 @@ from ratfit._error.measure import named
 from ratfit._fit import Fit
 from ratfit._parse import RatfitError
 from ratfit._record import Record
-from ratfit._sampling import count, resolve
+from ratfit._sampling import count, protocol_at
 from ratfit._setting import RANDOM, Setting, Value, setting
 from ratfit._speed import measure_speed
 from ratfit.baselines import Peer, Unavailable, peers
@@ -148,7 +148,7 @@ def is_timed(job: Job) -> bool:
 def asked(job: Job, how: Measuring, backend: str) -> dict[str, Any]:
     """The measurement that one row is the result of, in the keys that rows have for it."""
     place = job.place
-    sampling = resolve(how.sampling, place.variable.name, place.low, place.high, how.dtype, place.drawn)
+    sampling = protocol_at(place, how.sampling, how.dtype)
     samples = count(place.low, place.high, how.dtype) if how.samples is None else how.samples
     said = {"samples": samples, "sampling": named(sampling, job.within), "seed": how.seed, "dtype": how.dtype}
     return {

@@ -146,14 +146,21 @@ def _ranges(problem: Any, names: list[str], given: Mapping[sp.Symbol, sp.Expr]) 
     return {each: (float(each.low), float(each.high)) for name, each in known.items() if name in names}
 
 
-def _exact(problem: Any, reference: str | None) -> tuple[sp.Expr, Mapping[sp.Symbol, sp.Expr]]:
+def reference_of(problem: Any, name: str) -> Any:
+    """The reference of that name. **Fails** with `RatfitError`, which says the names that there are."""
     known = {each.name: each for each in problem.references}
-    names = ", ".join(known) or "none"
+    if name not in known:
+        there = ", ".join(known) or "none"
+        raise RatfitError(f"no reference {name!r}, there is: {there}{nearest(name, known)}")
+    return known[name]
+
+
+def _exact(problem: Any, reference: str | None) -> tuple[sp.Expr, Mapping[sp.Symbol, sp.Expr]]:
     if reference is not None:
-        if reference not in known:
-            raise RatfitError(f"no reference {reference!r}, there is: {names}{nearest(reference, known)}")
-        return known[reference].expression, known[reference].parameters
+        found = reference_of(problem, reference)
+        return found.expression, found.parameters
     if problem.target is None:
+        names = ", ".join(each.name for each in problem.references) or "none"
         raise RatfitError(f"this problem has no target, so eps and gamma need a reference; it has: {names}")
     return problem.target.expression, {}
 

@@ -1,5 +1,6 @@
 """The ledger of claims: its shape, what it decides, that it could decide otherwise, its command and its page."""
 
+import functools
 import importlib
 import json
 import math
@@ -36,7 +37,6 @@ from ratfit.claims._directions import albedo
 from ratfit.claims._models import LETTERS, V_PRIME, T, U, V
 from ratfit.claims.distributions import ALPHA, farthest_total, is_gaussian
 from ratfit.claims.masking import M, off_from_area, slope_jump, turned_by
-from ratfit.cli import main
 from ratfit.models import directions
 from ratfit.report.claims import claims_markdown, claims_text, summary
 
@@ -270,14 +270,8 @@ def test_words_select():
 
 
 @pytest.fixture
-def run(capsys):
-    def run(*arguments):
-        with pytest.raises(SystemExit) as stop:
-            main(["claims", *arguments])
-        out, err = capsys.readouterr()
-        return stop.value.code, out, err
-
-    return run
+def run(run):
+    return functools.partial(run, "claims")
 
 
 def test_json_is_what_the_contract_says(run):

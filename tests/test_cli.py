@@ -9,23 +9,11 @@ import pytest
 from ratfit._parse import parse_expression
 from ratfit._problem_file import read_problem
 from ratfit._problem_text import to_tables
-from ratfit.cli import main
 from ratfit.gallery import card, cards
 
 SINE = ["sin(x)", "--on", "0", "pi/2", "--form", "2/1", "--value", "0", "--derivative", "0"]
 SINE += ["--value", "pi/2", "--derivative", "pi/2"]
 EASY = ["--on", "0", "1", "--form", "1/1", "--value", "0"]
-
-
-@pytest.fixture
-def run(capsys):
-    def run(*arguments):
-        with pytest.raises(SystemExit) as stop:
-            main(list(arguments))
-        out, err = capsys.readouterr()
-        return stop.value.code, out, err
-
-    return run
 
 
 def problem_file(tmp_path, **changes):

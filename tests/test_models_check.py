@@ -1,5 +1,6 @@
 """The laws, on models that keep them and on models broken on purpose; and the command that measures them."""
 
+import functools
 import json
 import math
 
@@ -10,7 +11,6 @@ import sympy as sp
 from ratfit._parse import RatfitError
 from ratfit._target import parameter
 from ratfit.brdf import distribution
-from ratfit.cli import main
 from ratfit.models import MODELS, Model
 from ratfit.models.albedo import Albedo, angles
 from ratfit.models.check import check
@@ -186,14 +186,8 @@ def test_a_check_keeps_every_law_of_white_paper():
 
 
 @pytest.fixture
-def run(capsys):
-    def run(*arguments):
-        with pytest.raises(SystemExit) as stop:
-            main(["check-model", *arguments])
-        out, err = capsys.readouterr()
-        return stop.value.code, out, err
-
-    return run
+def run(run):
+    return functools.partial(run, "check-model")
 
 
 def test_command_lists_the_models(run):

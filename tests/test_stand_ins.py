@@ -8,7 +8,6 @@ import pytest
 import ratfit as rf
 from ratfit._sampling import bounds, drawn, resolve
 from ratfit._setting import PAIR, setting
-from ratfit.cli import main
 from ratfit.models import named
 from ratfit.models.stand_ins import STAND_INS, stand_ins
 
@@ -92,17 +91,6 @@ def test_names():
         "cook-torrance-optimised-as-printed", "cook-torrance-grooves",
     }  # fmt: skip
     assert [each.exact for each in stand_ins("cook-torrance-optimised")] == [named("cook-torrance")]
-
-
-@pytest.fixture
-def run(capsys):
-    def run(*words):
-        with pytest.raises(SystemExit) as stop:
-            main(list(words))
-        out, err = capsys.readouterr()
-        return stop.value.code, out, err
-
-    return run
 
 
 def test_bench_of_a_model(run, tmp_path):

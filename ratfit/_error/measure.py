@@ -19,7 +19,7 @@ from ratfit._error.reference import FLOAT64, Reference, reference_for
 from ratfit._error.stream import Watch, pass_of, stream
 from ratfit._error.subnormal import flushed_samples
 from ratfit._error.totals import Totals
-from ratfit._sampling import bounds, check_protocol, count, drawn, resolve
+from ratfit._sampling import bounds, check_protocol, count, drawn, protocol_at
 from ratfit._setting import Setting, Value, in_words, setting
 
 VANISHING = 1000.0
@@ -100,7 +100,7 @@ def measure_error(
     """
     check_protocol(sampling, samples, seed, dtype)
     place = setting(fit, parameters, reference, within)
-    sampling = resolve(sampling, place.variable.name, place.low, place.high, dtype, place.drawn)
+    sampling = protocol_at(place, sampling, dtype)
     if samples is None:
         samples = count(place.low, place.high, dtype)
     exhaustive = sampling == "exhaustive"

@@ -10,6 +10,7 @@ the domain, by arithmetic that every device rounds alike (`portable.py`); `ends.
 
 from ratfit._sampling.check import DTYPES as DTYPES
 from ratfit._sampling.check import check_protocol as check_protocol
+from ratfit._sampling.check import protocol_at as protocol_at
 from ratfit._sampling.check import resolve as resolve
 from ratfit._sampling.draw import draw as draw
 from ratfit._sampling.draw import drawing as drawing

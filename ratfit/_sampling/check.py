@@ -8,7 +8,7 @@ from ratfit._parse import RatfitError, nearest
 from ratfit._sampling.exhaustive import check_exhaustive
 from ratfit._sampling.protocols import CARRIERS, PROTOCOLS
 from ratfit._sampling.sobol import DIGITS
-from ratfit._setting import PAIR
+from ratfit._setting import PAIR, Setting
 
 DTYPES = ("float16", "float32", "float64")
 
@@ -53,6 +53,11 @@ def resolve(sampling: str, variable: str, low: float, high: float, dtype: str, d
         ways = " or ".join(f"{family}:{known}" for known in letters)
         raise RatfitError(f"{family} does not know which cosine {variable or 'the variable'} is: say {ways}")
     return f"{family}:{letter}"
+
+
+def protocol_at(place: Setting, sampling: str, dtype: str) -> str:
+    """The canonical name of the protocol that a setting is sampled by. **Fails** as `resolve` does."""
+    return resolve(sampling, place.variable.name, place.low, place.high, dtype, place.drawn)
 
 
 def check_protocol(sampling: str, samples: int | None, seed: int, dtype: str = "float64") -> None:

@@ -12,7 +12,7 @@ import sympy as sp
 from ratfit._kernel import Hoisted, Program, hoist
 from ratfit._lower import Step, tape
 from ratfit._parse import RatfitError
-from ratfit._sampling import bounds, drawn, resolve
+from ratfit._sampling import bounds, drawn, protocol_at
 from ratfit._setting import Setting
 
 NAMES = ("exact function", "fit", "copy floor")
@@ -77,7 +77,6 @@ def _entrant(name: str, program: Program, place: Setting) -> Entrant:
 def _samples(place: Setting, samples: int, seed: int, dtype: str) -> tuple[Any, ...]:
     import numpy as np
 
-    protocol = "hemisphere" if place.whole else "uniform"
-    sampling = resolve(protocol, place.variable.name, place.low, place.high, dtype, place.drawn)
+    sampling = protocol_at(place, "hemisphere" if place.whole else "uniform", dtype)
     points = drawn(sampling, seed, np.arange(samples, dtype=np.uint64), bounds(place, dtype), dtype)
     return tuple(map(np.asarray, points))

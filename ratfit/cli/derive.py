@@ -10,7 +10,7 @@ import click
 
 from ratfit._fit import Fit
 from ratfit._inline import settings_of
-from ratfit._parse import RatfitError, nearest
+from ratfit._parse import RatfitError
 from ratfit._problem import Problem
 from ratfit._problem_file import problem_of
 from ratfit._problem_text import at_parameters, to_tables
@@ -72,10 +72,11 @@ def _write_picture(fit: Fit, file: str, reference: str | None) -> None:
 
 def _check_reference(problem: Problem, name: str | None, values: dict[str, str]) -> None:
     """Before any work: a picture's reference is one of the problem's, and says some parameters itself."""
-    known = [each.name for each in problem.references]
-    if name is not None and name not in known:
-        raise RatfitError(f"no reference {name!r}{nearest(name, known)}; there is: {', '.join(known) or 'none'}")
-    said = {symbol.name for each in problem.references if each.name == name for symbol in each.parameters}
+    if name is None:
+        return
+    from ratfit._setting import reference_of
+
+    said = {symbol.name for symbol in reference_of(problem, name).parameters}
     for parameter in said & set(values):
         raise RatfitError(f"the reference {name} says {parameter} itself: leave --set {parameter} out")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -80,13 +80,17 @@ class Model:
 
     def settings(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Every parameter with its value, checked unless traced; `RatfitError` for unknown or impossible ones."""
+        self.check_names(values)
+        known = {**self.defaults, **values}
+        return {p.name: self._checked(p, known[p.name]) for p in self.parameters}
+
+    def check_names(self, values: Iterable[str]) -> None:
+        """**Fails** with `RatfitError` for a name that is none of the parameters'."""
         names = [p.name for p in self.parameters]
         for name in values:
             if name not in names:
                 there = ", ".join(names) or "none"
                 raise RatfitError(f"{self.name} has no parameter {name}{nearest(name, names)}; it has: {there}")
-        known = {**self.defaults, **values}
-        return {p.name: self._checked(p, known[p.name]) for p in self.parameters}
 
     def _checked(self, parameter: Parameter, value: Any) -> Any:
         """The value as an array inside the range; a traced one as it is."""

@@ -12,8 +12,10 @@ from ratfit._parse import RatfitError, nearest
 from ratfit._setting import RANDOM, Value
 from ratfit._target import Parameter
 from ratfit.brdf import fresnel
+from ratfit.models import named
+from ratfit.models._mixture import SHARE
 from ratfit.models._model import Model
-from ratfit.models.cook_torrance import COOK_TORRANCE, ETA, F_NORMAL, KAPPA, cook_torrance
+from ratfit.models.cook_torrance import ETA, F_NORMAL, KAPPA, cook_torrance
 from ratfit.models.directions import LETTERS, T
 
 
@@ -64,16 +66,12 @@ class StandIn:
         Where nothing is said of the share of the facets it is all: a diffuse share would hide their error. **Fails**
         with `RatfitError` for a name that is no parameter.
         """
-        names = [p.name for p in self.exact.parameters]
-        for name in asked:
-            if name not in names:
-                raise RatfitError(f"{self.exact.name} has no parameter {name}{nearest(name, names)}; it has: {names}")
-        share = {"specular_share": 1.0} if "specular_share" in names else {}
+        self.exact.check_names(asked)
+        share = {SHARE.name: 1.0} if SHARE in self.exact.parameters else {}
         cosines = {letter.name: RANDOM for letter in LETTERS[1:]}
         return {**cosines, **self.exact.defaults, **share, **asked}
 
 
-_NAMED = {model.name: model for model in COOK_TORRANCE}
 _NORMAL = {F_NORMAL: fresnel.normal(ETA, KAPPA)}
 _GROOVES = cook_torrance(
     "beckmann", "conductor", "torrance-sparrow",
@@ -84,9 +82,9 @@ STAND_INS: Mapping[str, StandIn] = MappingProxyType(
     {
         each.model.name: each
         for each in (
-            StandIn(_NAMED["cook-torrance-optimised"], _NAMED["cook-torrance"], _NORMAL),
-            StandIn(_NAMED["cook-torrance-optimised-as-printed"], _NAMED["cook-torrance-as-printed"], _NORMAL),
-            StandIn(_GROOVES, _NAMED["cook-torrance-as-printed"]),
+            StandIn(named("cook-torrance-optimised"), named("cook-torrance"), _NORMAL),
+            StandIn(named("cook-torrance-optimised-as-printed"), named("cook-torrance-as-printed"), _NORMAL),
+            StandIn(_GROOVES, named("cook-torrance-as-printed")),
         )
     }
 )

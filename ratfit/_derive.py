@@ -31,7 +31,8 @@ INTERPOLATED = sp.Float("1e-6")
 """The same for candidates that are interpolated."""
 
 POLYNOMIAL_SECONDS = 3.0
-"""How long the polynomial route may take, and at most half of the time there is, before many starts are tried."""
+"""How long the polynomial route may take before many starts are tried, in seconds of the processor: which route an
+answer comes by must not depend on what else the machine does. At most half of the time that a person allows."""
 
 
 @dataclass
@@ -55,7 +56,7 @@ def derive(problem: Problem | str | Path, *, route: str = "auto", timeout: float
 
         problem = find_problem(str(problem))
     known = _Known(route=route)
-    with TimeLimit(timeout) as limit:
+    with TimeLimit(timeout, wall=True) as limit:
         fit = _derived(problem, route, known, timeout, seed)
     if limit.passed:
         return _out_of_time(problem, known, timeout)
@@ -119,7 +120,7 @@ def _collect(system: System, route: str, known: _Known, seconds: float | None, s
         for candidate in candidates(system, route, seed):
             known.candidates.append(candidate)
     if limit.passed:
-        raise Undecided(f"the {route} route took longer than {seconds:g} s")
+        raise Undecided(f"the {route} route took longer than {seconds:g} s of processor time")
 
 
 def _distinct(everything: list[Candidate]) -> list[Candidate]:

@@ -48,6 +48,7 @@ FACTORS = [
     ("fresnel", "gold", lambda u: fresnel.conductor(u, sp.Rational("0.29"), sp.Rational("2.863")), {}),
     ("ggx-masking", None, masking.ggx, {"alpha": "1/3"}),
     ("ggx-masking-ends", None, masking.ggx, {"alpha": "1/3"}),
+    ("phong-density", None, distribution.phong, {"n": "7"}),
     ("smith", None, masking.smith_as_printed, {"m": "1/5"}),
     ("smith", "", masking.schlick, {"m": "1/5"}),
     ("smith", "smith-1967", masking.smith, {"m": "1/5"}),
@@ -142,6 +143,9 @@ NOTED = [
     ("conductor", {"eta": 0.29, "kappa": 2.863}, (0, 1), 0.019),
     ("conductor", {"eta": 0.70, "kappa": 2.704}, (0, 1), 0.031),
     ("conductor", {"eta": 2.94, "kappa": 2.99}, (0, 1), 0.18),
+    ("phong-density", {"n": 2.0}, (0, 1), 0.0),
+    ("phong-density", {"n": 5.0}, (0, 1), 0.084),
+    ("phong-density", {"n": 100.0}, (0, 1), 0.16),
 ]
 
 
@@ -163,3 +167,13 @@ def test_masking_comes_to_one_from_below(name):
     found = fit(np.linspace(0, end, 20001))
     assert np.all(np.diff(found) > -1e-15) and found.max() <= 1 + 1e-15 and found[-1] == pytest.approx(1, abs=1e-15)
     assert fit(end + 1e-9) == fit(1e9) == 1
+
+
+@pytest.mark.parametrize("n", [2, 7, 100])
+def test_the_fit_of_phongs_distribution_is_normalised(n):
+    fit = derived("phong-density")
+    values = dict.fromkeys(fit.problem.parameters, n)
+    density = sp.lambdify(fit.problem.variable, fit.expression.subs(values), "mpmath")
+    total = mpmath.quad(lambda t: 2 * mpmath.pi * t * density(t), [0, 0.5, 0.9, 1])
+    assert abs(total - 1) < 1e-12
+    assert abs(density(mpmath.mpf(1)) - (n + 2) / (2 * mpmath.pi)) < 1e-12 * n

@@ -88,7 +88,7 @@ def _parts(curve: Curve, clock: Clock) -> list[tuple[str, Part]]:
 
 def _collect(facts: list[Fact], what: str, part: Part, curve: Curve, clock: Clock) -> None:
     """Adds the facts of a part as they come: what was found before its time ran out is kept."""
-    with TimeLimit(clock.left() / 2) as limit:
+    with TimeLimit(clock.left() / 2, wall=True) as limit:
         try:
             for fact in part():
                 facts.append(_readable(fact, curve))

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import ratfit as rf
 from paper_figures import style
 from paper_figures.curves import Curve, curve, printed_error
-from paper_figures.strip import thin
 from paper_figures.style import percent, share
 from ratfit.plot.error import draw_error
 from ratfit.plot.style import SERIES
@@ -59,9 +58,12 @@ def draw(found: Sine, width: float = style.PAGE) -> Figure:
 
 
 def _draw_errors(axes: Axes, found: Sine) -> None:
+    width, mark = style.line_and_mark()
     for each, (colour, dashes) in zip((found.fraction, found.cubic), SERIES, strict=False):
-        draw_error(axes, each.places, each.errors, colour=colour, dashes=dashes, label=each.label, variable="$x$")
-    thin(axes)
+        draw_error(
+            axes, each.places, each.errors, colour=colour, dashes=dashes, width=width, mark=mark,
+            label=each.label, variable="$x$",
+        )  # fmt: skip
     for text in axes.texts:
         text.set_fontsize(axes.yaxis.get_ticklabels()[0].get_fontsize())
     style.head(axes, "Error, approximation − true:")

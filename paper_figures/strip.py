@@ -23,19 +23,9 @@ def draw_strip(axes: Axes, curves: Sequence[Curve], title: str, over: Sequence[N
     Arguments: `curves`, at most as many as there are SERIES, which gives them their looks; `title`, what differs from
     what; `over`, the places along the axis, where they are not the curves' own.
     """
+    width, mark = style.line_and_mark()
     along = over or [curve.places for curve in curves]
     for curve, places, (colour, dashes) in zip(curves, along, SERIES, strict=False):
-        worst = draw_error_curve(axes, places, curve.errors, colour=colour, dashes=dashes)
+        worst = draw_error_curve(axes, places, curve.errors, colour=colour, dashes=dashes, width=width, mark=mark)
         axes.lines[-2].set_label(percent(worst.error))  # the last line is the mark of the worst point
-    thin(axes)
     style.head(axes, title)
-
-
-def thin(axes: Axes) -> None:
-    """Curves and marks as thin as the figure's others; a zero line, which has two points, stays as it is."""
-    import matplotlib
-
-    for line in axes.lines:
-        line.set_markersize(matplotlib.rcParams["lines.markersize"])
-        if len(line.get_xdata()) > 2:
-            line.set_linewidth(matplotlib.rcParams["lines.linewidth"])

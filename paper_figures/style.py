@@ -85,6 +85,13 @@ def sheet(width: float, height: float) -> Iterator[Figure]:
         figure.draw_without_rendering()  # what is made on first drawing, further ticks say, has this look too
 
 
+def line_and_mark() -> tuple[float, float]:
+    """Width of lines and size of marks on the sheet at hand, in points."""
+    import matplotlib
+
+    return matplotlib.rcParams["lines.linewidth"], matplotlib.rcParams["lines.markersize"]
+
+
 def is_narrow(axes: Axes) -> bool:
     """Whether a title and a legend have no room on one line above these axes.
 

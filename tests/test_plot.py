@@ -12,6 +12,7 @@ import ratfit as rf
 from ratfit._fit import Candidate, Checked
 from ratfit.cli import main
 from ratfit.plot import Picture, plot_fit
+from ratfit.plot.curves import curves_of
 from ratfit.plot.entries import WIDEST, rejection
 from ratfit.plot.error import PLAIN, draw_error, draw_error_curve, worst_of, worst_text
 from ratfit.plot.text import mathematics, on_a_line, significant, text_width
@@ -251,8 +252,54 @@ def test_axes_that_are_given_are_drawn_on():
     assert pair[0].get_xlim() == pair[1].get_xlim(), "places stand below each other, whether axes are shared or not"
     one = Figure().subplots()
     assert fit.plot(one) == (one, None) and "fit" in curves(one)
-    with pytest.raises(rf.RatfitError, match="a pair"):
-        fit.plot(Figure().subplots(3))
+
+
+@pytest.mark.parametrize(
+    ("axes", "fragment"),
+    [(3, "not 3; or leave them out"), ("a.png", "fit.plot().curves.figure.savefig('a.png')"), ([1, 2], "2 of them"),
+     ((), "0 of them"), (np.zeros(3), "3 of them")],
+    ids=str,
+)  # fmt: skip
+def test_what_is_no_axes_is_refused(axes, fragment, sine):
+    with pytest.raises(rf.RatfitError, match="axes: ") as refused:
+        sine.plot(axes)
+    assert fragment in str(refused.value) and "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(("name", "reference"), [("conductor-ends", None), ("conductor-ends", "gold"), ("eq15", None)])
+def test_the_label_of_the_axis_is_inside_the_picture(name, reference):
+    above, below = rf.derive(name).plot(reference=reference)
+    axes = below or above
+    axes.figure.draw_without_rendering()
+    label, legend = axes.xaxis.label.get_window_extent(), axes.get_legend().get_window_extent()
+    assert label.x0 >= 0 and label.x1 <= axes.figure.bbox.width
+    assert legend.y1 <= label.y0, "the legend stands below all of its lines"
+    for parameter in rf.derive(name).problem.parameters:
+        assert f"{parameter} = " in axes.get_xlabel()
+
+
+@pytest.mark.parametrize("error", ["peak", "absolute"])
+def test_rounding_is_said_and_not_drawn(error):
+    conditions = [rf.Value(0), rf.Value(1), rf.Derivative(0), rf.Derivative(1), rf.Derivative(0, 2)]
+    quartic = rf.derive(problem((1 - X / 3) ** 4, (0, 1), conditions, rf.Rational(4, 0)))
+    curve = curves_of(quartic, None, None)[0]
+    assert 0 < np.nanmax(abs(curve.errors(error))) < 1e-15, "what would be drawn is noise"
+    _, below = quartic.plot(error=error)
+    (line,) = curves(below)["_error"]
+    assert not line.get_ydata().any()
+    assert [text.get_text() for text in below.texts] == ["no error beyond float64's rounding"]
+    assert list(below.get_yticks()) == [0]
+
+
+def test_rounding_beside_an_error_is_a_flat_line():
+    k = rf.parameter("k", 0, 4)
+    fit = rf.derive(problem(X + k * X**2, (0, 1), [rf.Value(0), rf.Value(1)], rf.Rational(1, 0)))
+    _, below = fit.plot(parameters={"k": [0, 4]})
+    assert [line.get_ydata().any() for line in curves(below)["_error"]] == [False, True]
+    assert not below.texts and len(below.get_yticks()) > 2
+    assert "k = 0: no error" in entries(below)
+    _, below = fit.plot(parameters={"k": [0, 0]})
+    assert [text.get_text() for text in below.texts] == ["no error"]
 
 
 BAD = [

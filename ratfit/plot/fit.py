@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ratfit._fit import Fit
@@ -11,7 +12,16 @@ from ratfit._parse import RatfitError, shortened
 from ratfit.plot.conditions import Page, draw_conditions
 from ratfit.plot.curves import ERRORS, FitCurves, Parameters, curves_of, other_formulas
 from ratfit.plot.entries import letter, rejection, said
-from ratfit.plot.error import PERCENT, PLAIN, Worst, draw_error, draw_error_curve, worst_text
+from ratfit.plot.error import (
+    PERCENT,
+    ROUNDING,
+    Unit,
+    draw_error,
+    draw_error_curve,
+    is_rounding,
+    worst_text,
+    write_worst,
+)
 from ratfit.plot.labels import exact_text, title_of, x_label
 from ratfit.plot.marks import Window
 from ratfit.plot.picture import Picture
@@ -68,7 +78,7 @@ def plot_fit(
         if below is not None:
             below.set_xlim(above.get_xlim())
         lowest = above if below is None else below
-        lowest.set_xlabel(plain(x_label(fit, curves, parameters)))
+        lowest.set_xlabel(x_label(fit, curves, parameters, axes_width(lowest)))
         legend_below(lowest, handles, is_ours=axes is None)
     return Picture(above, below)
 
@@ -84,11 +94,24 @@ def _axes(given: Axes | Sequence[Axes] | None, has_strip: bool) -> tuple[Axes, A
         return Figure(figsize=(6.6, 3.6), layout="constrained").subplots(), None
     if isinstance(given, Axes):
         return given, None
-    if len(given) != 2:
-        raise RatfitError(f"axes: give one, or a pair for curves and error, not {len(given)}")
+    above, below = _pair(given)
     if not has_strip:
-        given[1].set_axis_off()  # there is nothing exact, and so no error to draw there
-    return given[0], given[1] if has_strip else None
+        below.set_axis_off()  # there is nothing exact, and so no error to draw there
+    return above, below if has_strip else None
+
+
+def _pair(given: Any) -> tuple[Axes, Axes]:
+    """Two axes that a caller has given. RatfitError for anything else, a file's name above all."""
+    from matplotlib.axes import Axes
+
+    if isinstance(given, str | Path):
+        keep = f"fit.plot().curves.figure.savefig({str(given)!r})"
+        raise RatfitError(f"axes: {str(given)!r} is none of matplotlib's axes; to keep a picture write {keep}")
+    found = list(given) if isinstance(given, Iterable) else [given]
+    if len(found) != 2 or not all(isinstance(each, Axes) for each in found):
+        what = f"{len(found)} of them" if isinstance(given, Iterable) else shortened(repr(given), 60)
+        raise RatfitError(f"axes: give matplotlib's, one or a pair for curves and error, not {what}; or leave them out")
+    return found[0], found[1]
 
 
 def _draw_curves(
@@ -180,15 +203,26 @@ def _draw_others(axes: Axes, fit: Fit, curve: FitCurves) -> list[Any]:
 
 def _draw_strip(axes: Axes, fit: Fit, curves: Sequence[FitCurves], definition: str) -> list[str]:
     """The errors; returns for each curve of a family what its worst is, for one is written at its point."""
-    unit, variable = PLAIN if definition == "absolute" else PERCENT, fit.problem.variable.name
+    variable = fit.problem.variable.name
     axes.set_ylabel(ERRORS[definition])
     dress(axes)
     if len(curves) == 1:
-        draw_error(axes, curves[0].places, curves[0].errors(definition), variable=plain(variable), unit=unit)
+        (curve,) = curves
+        unit = _unit(definition, curve)
+        draw_error(axes, curve.places, curve.errors(definition), variable=plain(variable), unit=unit)
         return []
-    worst: list[Worst] = []
+    notes, is_flat = [], True
     for place, curve in enumerate(curves):
-        colour, dashes = _look(place)
-        found = draw_error_curve(axes, curve.places, curve.errors(definition), colour=colour, dashes=dashes, unit=unit)
-        worst.append(found)
-    return [worst_text(each, variable=variable, unit=unit) for each in worst]
+        (colour, dashes), unit = _look(place), _unit(definition, curve)
+        worst = draw_error_curve(axes, curve.places, curve.errors(definition), colour=colour, dashes=dashes, unit=unit)
+        notes.append(worst_text(worst, variable=variable, unit=unit))
+        is_flat = is_flat and is_rounding(worst, unit)
+    if is_flat:
+        low, high = min(c.places[0] for c in curves), max(c.places[-1] for c in curves)
+        write_worst(axes, max(notes, key=len), ((low + high) / 2, 0.0), 0.5)
+    return notes
+
+
+def _unit(definition: str, curve: FitCurves) -> Unit:
+    """Percent of what the error is a part of; a difference is rounding beside the peak of its curve."""
+    return Unit(1, "", ROUNDING * curve.peak) if definition == "absolute" else PERCENT

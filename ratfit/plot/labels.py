@@ -36,8 +36,11 @@ def title_of(fit: Fit, room: float) -> str:
     return title if written is not None and text_width(title, 11) < room else name
 
 
-def x_label(fit: Fit, curves: Sequence[FitCurves], parameters: Parameters | None) -> str:
-    """The variable, where an infinite domain is cut, and the parameters that all curves share."""
+def x_label(fit: Fit, curves: Sequence[FitCurves], parameters: Parameters | None, room: float) -> str:
+    """The variable, where an infinite domain is cut, and the parameters that all curves share.
+
+    In lines of at most `room` points.
+    """
     problem = fit.problem
     label = str(problem.variable)
     if any(end.is_infinite for end in problem.domain):
@@ -46,8 +49,24 @@ def x_label(fit: Fit, curves: Sequence[FitCurves], parameters: Parameters | None
     settings = [curve.setting.parameters for curve in curves]
     shared = {name: value for name, value in settings[0].items() if len({s[name] for s in settings}) == 1}
     middles = {p.name: middle(p) for p in problem.parameters if p.name not in (parameters or {})}
+    is_middle = [middles.get(name) == value for name, value in shared.items()]
+    are_all = len(is_middle) > 1 and all(is_middle)
     values = [
-        f"{name} = {significant(value, 4)}" + (" (mid-range)" if middles.get(name) == value else "")
-        for name, value in shared.items()
+        f"{name} = {significant(value, 4)}" + (" (mid-range)" if middle_here and not are_all else "")
+        for (name, value), middle_here in zip(shared.items(), is_middle, strict=True)
     ]
-    return label + (f"   at {', '.join(values)}" if values else "")
+    pieces = [f"{label}   at {values[0]}", *values[1:], *(["all mid-range"] if are_all else [])] if values else [label]
+    return plain(_in_lines(pieces, room))
+
+
+def _in_lines(pieces: Sequence[str], room: float) -> str:
+    """The pieces with commas between them, in lines of at most `room` points."""
+    lines = [pieces[0]]
+    for piece in pieces[1:]:
+        longer = f"{lines[-1]}, {piece}"
+        if text_width(plain(longer), 10) <= room:
+            lines[-1] = longer
+        else:
+            lines[-1] += ","
+            lines.append(piece)
+    return "\n".join(lines)

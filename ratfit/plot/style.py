@@ -53,6 +53,9 @@ _BESIDE = 350
 _ROW = 0.2
 """Inches that a line of a legend takes."""
 
+_LINE = 13
+"""Points that a further line of an axis's label takes."""
+
 
 @contextmanager
 def settings(are_ours: bool = True) -> Iterator[None]:
@@ -75,7 +78,7 @@ def axes_width(axes: Axes) -> float:
 
 
 def legend_below(axes: Axes, handles: Sequence[Any], is_ours: bool) -> None:
-    """A legend below the axes and their label, where no data are.
+    """A legend below the axes and their label, of however many lines, where no data are.
 
     A constrained layout makes room for it, and a figure of our own grows by it.
     """
@@ -86,14 +89,16 @@ def legend_below(axes: Axes, handles: Sequence[Any], is_ours: bool) -> None:
     widths = [text_width(str(handle.get_label()), 9) for handle in handles]
     half = (len(handles) + 1) // 2
     columns = 2 if max(widths[:half]) + max(widths[half:], default=0) < min(_BESIDE, axes_width(axes)) else 1
+    more_lines = axes.get_xlabel().count("\n")
     if is_ours:
         height = axes.figure.get_figheight() + _ROW * (half if columns == 2 else len(handles))  # type: ignore[union-attr]
-        axes.figure.set_figheight(height)  # type: ignore[union-attr]  # a Figure of its own
+        axes.figure.set_figheight(height + more_lines * _LINE / 72)  # type: ignore[union-attr]  # a Figure of its own
     axes.legend(
         handles=list(handles),
         loc="upper center",
         bbox_to_anchor=(0.5, 0),
-        bbox_transform=axes.transAxes + ScaledTranslation(0, -38 / 72, axes.figure.dpi_scale_trans),
+        bbox_transform=axes.transAxes
+        + ScaledTranslation(0, -(38 + more_lines * _LINE) / 72, axes.figure.dpi_scale_trans),
         ncols=columns,
         frameon=False,
         borderaxespad=0,

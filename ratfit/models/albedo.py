@@ -7,6 +7,7 @@ white surroundings that comes back toward a viewer; models that are not reciproc
 from __future__ import annotations
 
 import math
+import numbers
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -17,7 +18,7 @@ from ratfit._lower import lower
 from ratfit._parse import RatfitError
 from ratfit.models._half_sphere import Nodes, facet_nodes, light_nodes, views
 from ratfit.models._model import Model
-from ratfit.models.directions import LETTERS, W
+from ratfit.models.directions import LETTERS, W, as_floats
 from ratfit.models.samplers import Blend, sampler_for
 
 ANGLES = 64
@@ -63,7 +64,7 @@ def albedo(
     where a model jumps the error may be several times as great.
     **Fails** with `RatfitError` for cosines outside (0, 1] and for parameters that are not one number.
     """
-    cosines, known = _checked(model, cosines, values)
+    cosines, known = _checked(model, cosines, azimuth, values)
     whole = model.reflectance.has(W) and abs(math.sin(2 * azimuth)) > 1e-9
     ask = _Question(model, azimuth, whole, known)
     found, errors = _doubled(ask, facet_nodes, cosines)
@@ -94,9 +95,11 @@ def monte_carlo_albedo(
 ) -> Albedo:
     """The same by importance sampling, with one standard deviation for each angle.
 
-    **Arguments:** as in `albedo`; `samples` for each angle; `seed`; `sampler`, that of `sampler_for` where left out.
+    **Arguments:** as in `albedo`; `samples` for each angle, two at least, for a deviation needs two; `seed`; `sampler`,
+    that of `sampler_for` where left out.
     """
-    cosines, known = _checked(model, cosines, values)
+    cosines, known = _checked(model, cosines, azimuth, values)
+    samples, seed = _whole(samples, "samples", 2), _whole(seed, "seed", 0)
     sampler = sampler or sampler_for(model)
     random = np.random.default_rng(seed)
     means, deviations = [], []
@@ -108,8 +111,18 @@ def monte_carlo_albedo(
     return Albedo(cosines, np.array(means) + _coherent(model, cosines, known), np.array(deviations))
 
 
-def _checked(model: Model, cosines: Any, values: dict[str, Any]) -> tuple[Any, dict[str, float]]:
-    cosines = np.atleast_1d(np.asarray(angles() if cosines is None else cosines, float))
+def _whole(number: Any, name: str, least: int) -> int:
+    """A whole number, which may be written as 1e4. **Fails** with `RatfitError` for others and for too small ones."""
+    is_whole = isinstance(number, numbers.Integral) or (isinstance(number, numbers.Real) and float(number).is_integer())
+    if not is_whole or int(number) < least:
+        raise RatfitError(f"{name} = {number!r}: give a whole number from {least} on")
+    return int(number)
+
+
+def _checked(model: Model, cosines: Any, azimuth: float, values: dict[str, Any]) -> tuple[Any, dict[str, float]]:
+    cosines = np.atleast_1d(np.asarray(as_floats(angles() if cosines is None else cosines, "cosines"), float))
+    if not (isinstance(azimuth, numbers.Real) and math.isfinite(azimuth)):
+        raise RatfitError(f"azimuth = {azimuth!r}: give one number, in radians")
     if cosines.ndim != 1 or not np.all((cosines > 0) & (cosines <= 1)):
         raise RatfitError("the cosines of the views are numbers above 0, up to 1")
     known = model.settings(values)

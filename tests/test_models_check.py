@@ -62,7 +62,7 @@ def test_reciprocity(model, verdict, found):
         (own(2 / sp.pi), FAILS, 2, {}),
         (own((1 + 4 * K * (1 - K)) / sp.pi, K), FAILS, 2, {"k": 0.5}),  # between the ends of the range
         (own(1 / (2 * sp.pi * V * V_PRIME)), FAILS, 1 / angles().min(), {"view": 89.97}),
-        (own(V_PRIME, coherent=sp.S.Half), FAILS, 2 * math.pi / 3 + 0.5, {}),
+        (own(V_PRIME, mirror=sp.S.Half), FAILS, 2 * math.pi / 3 + 0.5, {}),
         (own(sp.log(-V)), FAILS, math.nan, {}),
     ],
 )
@@ -112,7 +112,7 @@ def test_the_conserving_model_conserves(fixed):
     ],
 )
 def test_normalisation(facets, verdict, found):
-    law = normalisation(own(1 / sp.pi, ALPHA, facets=facets), {}, 0)
+    law = normalisation(own(1 / sp.pi, ALPHA, distribution=facets), {}, 0)
     assert law.verdict == verdict
     if verdict != NOT_APPLICABLE:
         assert law.found == pytest.approx(found, abs=1e-4)

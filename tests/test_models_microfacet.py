@@ -8,17 +8,19 @@ from scipy.special import erf, erfc
 
 from ratfit._lower import lower
 from ratfit._parse import RatfitError
+from ratfit._target import parameter
 from ratfit.brdf import distribution
 from ratfit.models import LETTERS, MODELS, _schlick, conserving, named
 from ratfit.models.conserving import hidden
 from ratfit.models.cook_torrance import COOK_TORRANCE, cook_torrance
-from ratfit.models.directions import T, V, W
+from ratfit.models.directions import SQUARES, T, V, W
 from ratfit.models.he import HE
 from ratfit.models.schlick import SCHLICK, schlick
 
 pytestmark = pytest.mark.thorough  # long sweeps of formulas that seldom change
 
 OURS = [*COOK_TORRANCE, *HE, *SCHLICK, *conserving.CONSERVING]
+R = parameter("r", 0, 1)
 NORMAL = np.array([0.0, 0.0, 1.0])
 
 
@@ -379,13 +381,13 @@ def test_other_choices_make_models(masking, fresnel_name):
 
 
 @pytest.mark.parametrize(("ours", "theirs"), [
-    (_schlick.zenith, lambda t, r: distribution.zenith(t, r)),
-    (_schlick.azimuth, distribution.azimuth),
-    (_schlick.azimuth_as_printed, distribution.azimuth_as_printed),
+    (_schlick.zenith(R), distribution.zenith(T, R)),
+    (_schlick.azimuth(R), distribution.azimuth(W, R)),
+    (_schlick.azimuth_as_printed(R), distribution.azimuth_as_printed(W, R)),
 ])  # fmt: skip
 def test_schlicks_factors_are_those_of_the_formulas(ours, theirs):
     x, parameter = np.linspace(0, 1, 21)[:, None], np.array([1e-3, 0.1, 0.5, 1.0])
-    found, expected = (lower(f(T, W), [T, W])(x, parameter) for f in (ours, theirs))
+    found, expected = (lower(f.xreplace(SQUARES), [T, W, R])(x, x, parameter) for f in (ours, theirs))
     np.testing.assert_allclose(found, expected, rtol=1e-13)
 
 

@@ -9,7 +9,7 @@ import sympy as sp
 from ratfit._parse import RatfitError
 from ratfit.models import MODELS, Model
 from ratfit.models.albedo import albedo, angles, monte_carlo_albedo
-from ratfit.models.directions import R_DOT_V, V_PRIME, T, U, V, W
+from ratfit.models.directions import R_DOT_V, SQUARES, V_PRIME, T, U, V, W
 from ratfit.models.lambert import LAMBERT
 from ratfit.models.laws.drawing import chi_square
 from ratfit.models.oren_nayar import OREN_NAYAR
@@ -94,7 +94,7 @@ def test_what_a_model_says_of_its_facets_and_its_sampler_fits_it(model):
     if model.sampler is not None:
         assert {p.name for p in named(model.sampler).pdf.parameters} <= own_names
     if model.facets is not None:
-        assert model.facets.free_symbols <= {T, W, *model.parameters}
+        assert model.facets.free_symbols <= {T, W, *SQUARES, *model.parameters}
 
 
 def test_oren_nayar_at_normal_incidence_is_its_first_term():
@@ -113,7 +113,7 @@ def test_jumps_cost_digits_not_correctness():
 
 
 def test_the_coherent_share_counts():
-    with_mirror = own(1 / (2 * sp.pi), coherent=V / 2)
+    with_mirror = own(1 / (2 * sp.pi), mirror=V / 2)
     assert albedo(with_mirror, [0.5]).values[0] == pytest.approx(0.75, abs=1e-6)
     drawn = monte_carlo_albedo(with_mirror, [0.5], sampler=Blend(((COSINE, {}),)))
     assert drawn.values[0] == pytest.approx(0.75, abs=1e-12)
@@ -240,11 +240,48 @@ def test_jax_draws_what_numpy_draws():
         (lambda: GGX.sample(np.zeros(2), np.zeros(2)), "view"),
         (lambda: GGX.sample(facing(0.1), np.zeros(2), alpha=2.0), "outside"),
         (lambda: GGX.sample(facing(0.1), np.zeros(2), rough=0.2), "alpha"),
+        (lambda: GGX.sample(facing(0.1), np.array([1.5, 0.5])), r"outside \[0, 1\]"),
+        (lambda: GGX.sample(facing(0.1), np.array([0.5, -1e-3])), r"outside \[0, 1\]"),
+        (lambda: COSINE.sample(facing(0.1), np.array([[0.5, 0.5], [math.nan, 0.5]])), r"outside \[0, 1\]"),
+        (lambda: ANY.sample(facing(0.1), np.array([math.inf, 0.5])), r"outside \[0, 1\]"),
+        (lambda: monte_carlo_albedo(LAMBERT, samples=0), "samples = 0: give a whole number from 2 on"),
+        (lambda: monte_carlo_albedo(LAMBERT, samples=1), "from 2 on"),
+        (lambda: monte_carlo_albedo(LAMBERT, samples=-5), "from 2 on"),
+        (lambda: monte_carlo_albedo(LAMBERT, samples=1.5), "from 2 on"),
+        (lambda: monte_carlo_albedo(LAMBERT, samples=math.inf), "from 2 on"),
+        (lambda: monte_carlo_albedo(LAMBERT, samples="many"), "samples = 'many'"),
+        (lambda: monte_carlo_albedo(LAMBERT, seed=-1), "seed = -1: give a whole number from 0 on"),
+        (lambda: monte_carlo_albedo(LAMBERT, azimuth=math.nan), "azimuth = nan"),
+        (lambda: albedo(LAMBERT, azimuth=[0.1, 0.2]), "one number, in radians"),
+        (lambda: albedo(LAMBERT, "0.5"), "real numbers"),
     ],
 )
 def test_bad_input_is_said(call, fragment):
     with pytest.raises(RatfitError, match=fragment):
         call()
+
+
+def test_a_whole_number_may_be_written_as_a_power_of_ten():
+    mine, theirs = (monte_carlo_albedo(LAMBERT, [0.5], samples=count, seed=3) for count in (1e3, 1000))
+    assert mine.values[0] == theirs.values[0] and mine.errors[0] == theirs.errors[0]
+
+
+@pytest.mark.parametrize("name", SAMPLERS)
+def test_the_ends_of_the_uniform_numbers_give_directions(name):
+    """A generator of float32 numbers may round to 1."""
+    corners = np.array([[a, b] for a in (0.0, 1.0) for b in (0.0, 1.0)])
+    for kind in (np.float32, np.float64):
+        lengths = np.linalg.norm(SAMPLERS[name].sample(facing(0.1).astype(kind), corners.astype(kind)), axis=-1)
+        assert np.allclose(lengths, 1, atol=1e-5)
+
+
+def test_a_transformation_of_jax_is_not_looked_into():
+    import jax
+
+    drawn = jax.jit(lambda pair: GGX.sample(facing(0.1), pair))(np.array([1.5, 0.5], np.float32))
+    assert drawn.shape == (3,)
+    with pytest.raises(RatfitError, match="outside"):
+        GGX.sample(facing(0.1), jax.numpy.asarray([1.5, 0.5]))
 
 
 def test_a_model_without_a_sampler_gets_the_general_one():

@@ -10,6 +10,9 @@ whose exponent is beyond `UNDERFLOW` is 0. On arrays in float64 the values are r
 roughnesses to 8, and to 3 more for every unit of a Gaussian's exponent, tan^2/alpha^2, or of `blinn`'s logarithm.
 Gradients are finite where there is no Dirac (in float32 for roughness from 1e-6 on). What roughness means in each:
 `ratfit.brdf.roughness`. For calculus take the `interior` of a formula.
+
+Where lobes are narrow t has no digits of the angle left: a float32 is 1 - 6e-8 next to 1, an angle of 3e-4. Those who
+know 1 - t^2 better, from the tangential part of H, give it as `sine_squared`; left out, it is made of t.
 """
 
 from collections.abc import Callable
@@ -24,7 +27,7 @@ UNDERFLOW = 700  # exp(-700) is the last power of ten or so that float64 has in 
 MIRROR = 10**35  # an exponent: with it t**n is 0 for every double below 1, and float32 can still hold n
 
 
-def beckmann(t: Expr, alpha: Expr) -> Expr:
+def beckmann(t: Expr, alpha: Expr, sine_squared: Expr | None = None) -> Expr:
     """Beckmann's distribution, of slopes that are Gaussian: exp(-tan^2/alpha^2)/(pi alpha^2 t^4).
 
     alpha >= 0 is the root mean square of the slope in two dimensions, sqrt(2) times that along one axis. Vanishes with
@@ -32,7 +35,10 @@ def beckmann(t: Expr, alpha: Expr) -> Expr:
     Source: schlick1994 Eq. 20 (m is alpha, D is pi times this); microfacet and polimi2024 (rho is alpha: the root
     mean square slope, not the average slope that is said there).
     """
-    lobe = _gaussian(t, _beyond(t, 1, alpha**2), 1 / _rough(alpha) ** 2, lambda t: pi * _rough(alpha) ** 2 * t**4)
+    s2 = _sine_squared(t, sine_squared)
+    lobe = _gaussian(
+        t, s2, _beyond(t, s2, 1, alpha**2), 1 / _rough(alpha) ** 2, lambda t: pi * _rough(alpha) ** 2 * t**4
+    )
     return _lobe(t, alpha < SMOOTH, _dirac(t), lobe)
 
 
@@ -53,17 +59,18 @@ def beckmann_rational(t: Expr, m: Expr) -> Expr:
     return _lobe(t, m < SMOOTH, _dirac(t), Piecewise((constant, m >= 1), (fraction, True)))
 
 
-def ggx(t: Expr, alpha: Expr) -> Expr:
+def ggx(t: Expr, alpha: Expr, sine_squared: Expr | None = None) -> Expr:
     """GGX or Trowbridge-Reitz, alpha^2/(pi (t^2 (alpha^2 - 1) + 1)^2).
 
     alpha >= 0: the constant 1/pi at alpha = 1, a Dirac at 0. alpha^2/pi at t = 0, 1/(pi alpha^2) at t = 1.
     Source: walter2007 Eq. 33; microfacet; polimi2024 (rho is alpha).
     """
     rough = _rough(alpha)
-    return _lobe(t, alpha < SMOOTH, _dirac(t), 1 / (pi * (rough * t**2 + _sine_squared(t) / rough) ** 2))
+    s2 = _sine_squared(t, sine_squared)
+    return _lobe(t, alpha < SMOOTH, _dirac(t), 1 / (pi * (rough * t**2 + s2 / rough) ** 2))
 
 
-def ggx_anisotropic(t: Expr, w: Expr, alpha_x: Expr, alpha_y: Expr) -> Expr:
+def ggx_anisotropic(t: Expr, w: Expr, alpha_x: Expr, alpha_y: Expr, sine_squared: Expr | None = None) -> Expr:
     """GGX with a roughness along the tangent, alpha_x, and one across, alpha_y.
 
     1/(pi alpha_x alpha_y (t^2 + (1 - t^2) (w^2/alpha_x^2 + (1 - w^2)/alpha_y^2))^2); `ggx` where the two are equal.
@@ -71,7 +78,7 @@ def ggx_anisotropic(t: Expr, w: Expr, alpha_x: Expr, alpha_y: Expr) -> Expr:
     Source: heitz2014.
     """
     along, across = _rough(alpha_x), _rough(alpha_y)
-    lobe = 1 / (pi * along * across * (t**2 + _sine_squared(t) * _spread(w, along, across)) ** 2)
+    lobe = 1 / (pi * along * across * (t**2 + _sine_squared(t, sine_squared) * _spread(w, along, across)) ** 2)
     return _lobe(t, Min(alpha_x, alpha_y) < SMOOTH, _line(t, w, alpha_x, alpha_y), lobe)
 
 
@@ -96,44 +103,45 @@ def blinn(t: Expr, rho: Expr) -> Expr:
     return _power(t, exponent, 1 / (pi * rough**2), rho < SMOOTH, rho >= 1)
 
 
-def ward(t: Expr, w: Expr, m: Expr, n: Expr) -> Expr:
+def ward(t: Expr, w: Expr, m: Expr, n: Expr, sine_squared: Expr | None = None) -> Expr:
     """Ward's elliptical Gaussian, normalised: Beckmann's distribution with two roughnesses.
 
     exp(-tan^2 (w^2/m^2 + (1 - w^2)/n^2))/(pi m n t^4), m along the tangent and n across, each as `beckmann`'s alpha.
     With one of them 0 it is a Dirac on a line of directions, with both at N.
     Source: schlick1994 Eq. 10 and ward1992, with the 1/t^4 that Eq. 7 asks for (times 1/pi).
     """
-    return _ward(t, w, m, n, lambda along, across, t: pi * along * across * t**4)
+    return _ward(t, w, m, n, sine_squared, lambda along, across, t: pi * along * across * t**4)
 
 
-def ward_as_printed(t: Expr, w: Expr, m: Expr, n: Expr) -> Expr:
+def ward_as_printed(t: Expr, w: Expr, m: Expr, n: Expr, sine_squared: Expr | None = None) -> Expr:
     """Ward's D in print, exp(-tan^2 (w^2/m^2 + (1 - w^2)/n^2))/(m n); without the 1/t^4 its Eq. 7 is below 1.
 
     Source: schlick1994 Eq. 10, in its own normalisation; the first two forms of polimi2024 are this over
     4 pi sqrt(v v').
     """
-    return _ward(t, w, m, n, lambda along, across, t: along * across)
+    return _ward(t, w, m, n, sine_squared, lambda along, across, t: along * across)
 
 
-def ward_third_form_as_printed(t: Expr, w: Expr, m: Expr, n: Expr) -> Expr:
+def ward_third_form_as_printed(t: Expr, w: Expr, m: Expr, n: Expr, sine_squared: Expr | None = None) -> Expr:
     """Ward's D in the third form of polimi2024: the exponent has lost its minus sign, so it grows to infinity.
 
     Source: polimi2024; the normalisation is that of `ward_as_printed`.
     """
-    along, across, endless = _rough(m), _rough(n), _ward_beyond(t, w, m, n)
-    exponent = _sine_squared(t) * _spread(w, along, across) / instead(t, 1, endless) ** 2
+    s2 = _sine_squared(t, sine_squared)
+    along, across, endless = _rough(m), _rough(n), _ward_beyond(t, w, s2, m, n)
+    exponent = s2 * _spread(w, along, across) / instead(t, 1, endless) ** 2
     lobe = Piecewise((oo, endless), (exp(exponent) / (along * across), True))
     return _lobe(t, Min(m, n) < SMOOTH, oo, lobe)
 
 
-def zenith(t: Expr, r: Expr) -> Expr:
+def zenith(t: Expr, r: Expr, sine_squared: Expr | None = None) -> Expr:
     """Schlick's factor of the angle to the normal, Z = r/(1 + r t^2 - t^2)^2: pi times `ggx` with alpha^2 = r.
 
     r in [0, 1]: the constant 1 at r = 1, a Dirac at r = 0. The integral of 2 t Z over [0, 1] is 1.
     Source: schlick1994 Eq. 28, Z, which keeps Eq. 27.
     """
     rough = instead(r, 1, r < SMOOTH**2)
-    lobe = 1 / (rough * (t**2 + _sine_squared(t) / rough) ** 2)
+    lobe = 1 / (rough * (t**2 + _sine_squared(t, sine_squared) / rough) ** 2)
     return _lobe(t, r < SMOOTH**2, _dirac(t), lobe)
 
 
@@ -163,38 +171,38 @@ def azimuth_as_printed_mean(p: Expr) -> Expr:
     return 2 * sqrt(p) * elliptic_k(1 - p**2) / pi
 
 
-def schlick(t: Expr, w: Expr, r: Expr, p: Expr) -> Expr:
+def schlick(t: Expr, w: Expr, r: Expr, p: Expr, sine_squared: Expr | None = None) -> Expr:
     """Schlick's distribution, Z(t) A(w)/pi with the A that keeps Eq. 27: normalised for every r and p.
 
     As A does not depend on t, the value at N itself (t = 1) depends on the w with which one comes there.
     Source: schlick1994 Eqs. 25 to 28.
     """
-    return _schlick(t, w, r, p, azimuth(w, p))
+    return _schlick(t, w, r, p, azimuth(w, p), sine_squared)
 
 
-def schlick_as_printed(t: Expr, w: Expr, r: Expr, p: Expr) -> Expr:
+def schlick_as_printed(t: Expr, w: Expr, r: Expr, p: Expr, sine_squared: Expr | None = None) -> Expr:
     """Schlick's distribution with the A in print, Z(t) A(w)/pi; its integral is `azimuth_as_printed_mean`.
 
     Source: schlick1994 Eqs. 25 to 28.
     """
-    return _schlick(t, w, r, p, azimuth_as_printed(w, p))
+    return _schlick(t, w, r, p, azimuth_as_printed(w, p), sine_squared)
 
 
-def smoothie(t: Expr, alpha: Expr) -> Expr:
+def smoothie(t: Expr, alpha: Expr, sine_squared: Expr | None = None) -> Expr:
     """Smoothie's distribution, normalised: (4 + alpha^2)/pi (alpha + 4 (1 - t^2)/alpha)^-2.
 
     alpha >= 0; it is `ggx` with alpha_g^2 = alpha^2/(4 + alpha^2). A Dirac at alpha = 0.
     Source: smoothie, with the factor that it leaves out.
     """
-    return _lobe(t, alpha < SMOOTH, _dirac(t), (4 + alpha**2) / pi * _smoothie(t, alpha))
+    return _lobe(t, alpha < SMOOTH, _dirac(t), (4 + alpha**2) / pi * _smoothie(t, alpha, sine_squared))
 
 
-def smoothie_as_printed(t: Expr, alpha: Expr) -> Expr:
+def smoothie_as_printed(t: Expr, alpha: Expr, sine_squared: Expr | None = None) -> Expr:
     """Smoothie's distribution in print, (alpha + 4 sin^2/alpha)^-2; its integral with the cosine is pi/(4 + alpha^2).
 
     Source: smoothie.
     """
-    return _lobe(t, alpha < SMOOTH, _dirac(t), _smoothie(t, alpha))
+    return _lobe(t, alpha < SMOOTH, _dirac(t), _smoothie(t, alpha, sine_squared))
 
 
 def smoothie_energy(alpha: Expr) -> Expr:
@@ -225,8 +233,10 @@ def _complement(t: Expr) -> Expr:
     return Piecewise((S.Zero, t > 1), (1 - t, True))
 
 
-def _sine_squared(t: Expr) -> Expr:
+def _sine_squared(t: Expr, known: Expr | None) -> Expr:
     """1 - t^2; where t is near 1 the square would lose what is left, where it is not the product has more to round."""
+    if known is not None:
+        return known
     return Piecewise((1 - t**2, t < S.Half), (S.Zero, t > 1), ((1 - t) * (1 + t), True))
 
 
@@ -263,25 +273,28 @@ def _spread(w: Expr, along: Expr, across: Expr) -> Expr:
     return w**2 / along**2 + (1 - w) * (1 + w) / across**2
 
 
-def _beyond(t: Expr, spread: Expr | int, scale: Expr) -> Relational:
+def _beyond(t: Expr, s2: Expr, spread: Expr | int, scale: Expr) -> Relational:
     """Whether tan^2 spread/scale is beyond `UNDERFLOW`, for any t and scale: without a division."""
-    return (1 - t) * (1 + t) * spread >= UNDERFLOW * t**2 * scale
+    return s2 * spread >= UNDERFLOW * t**2 * scale
 
 
-def _ward_beyond(t: Expr, w: Expr, m: Expr, n: Expr) -> Relational:
-    return _beyond(t, (w * n) ** 2 + (1 - w) * (1 + w) * m**2, (m * n) ** 2)
+def _ward_beyond(t: Expr, w: Expr, s2: Expr, m: Expr, n: Expr) -> Relational:
+    return _beyond(t, s2, (w * n) ** 2 + (1 - w) * (1 + w) * m**2, (m * n) ** 2)
 
 
-def _gaussian(t: Expr, nothing: Relational, spread: Expr, below: Callable[[Expr], Expr]) -> Expr:
+def _gaussian(t: Expr, s2: Expr, nothing: Relational, spread: Expr, below: Callable[[Expr], Expr]) -> Expr:
     """exp(-tan^2 spread)/below; where the exponential is nothing, below may be 0 too."""
     inside = instead(t, 1, nothing)
-    gaussian = exp(-_sine_squared(t) * spread / inside**2) / below(inside)
+    gaussian = exp(-s2 * spread / inside**2) / below(inside)
     return Piecewise((S.Zero, nothing), (gaussian, True))
 
 
-def _ward(t: Expr, w: Expr, m: Expr, n: Expr, below: Callable[[Expr, Expr, Expr], Expr]) -> Expr:
-    along, across = _rough(m), _rough(n)
-    lobe = _gaussian(t, _ward_beyond(t, w, m, n), _spread(w, along, across), lambda t: below(along, across, t))
+def _ward(
+    t: Expr, w: Expr, m: Expr, n: Expr, sine_squared: Expr | None, below: Callable[[Expr, Expr, Expr], Expr]
+) -> Expr:
+    along, across, s2 = _rough(m), _rough(n), _sine_squared(t, sine_squared)
+    nothing = _ward_beyond(t, w, s2, m, n)
+    lobe = _gaussian(t, s2, nothing, _spread(w, along, across), lambda t: below(along, across, t))
     return _lobe(t, Min(m, n) < SMOOTH, _line(t, w, m, n), lobe)
 
 
@@ -292,12 +305,12 @@ def _power(t: Expr, n: Expr, peak: Expr, smooth: Relational, flat: Relational) -
     return _lobe(t, smooth, _dirac(t), Piecewise((foot, t <= 0), (peak * inside**n, True)))
 
 
-def _schlick(t: Expr, w: Expr, r: Expr, p: Expr, factor: Expr) -> Expr:
+def _schlick(t: Expr, w: Expr, r: Expr, p: Expr, factor: Expr, sine_squared: Expr | None) -> Expr:
     """The product; where a factor is a Dirac, its value alone, as infinity times 0 is no number."""
-    inside = Piecewise((_across(w), p < SMOOTH), (zenith(t, r) * factor / pi, True))
+    inside = Piecewise((_across(w), p < SMOOTH), (zenith(t, r, sine_squared) * factor / pi, True))
     return _lobe(t, r < SMOOTH**2, _dirac(t), inside)
 
 
-def _smoothie(t: Expr, alpha: Expr) -> Expr:
+def _smoothie(t: Expr, alpha: Expr, sine_squared: Expr | None) -> Expr:
     rough = _rough(alpha)
-    return (rough + 4 * _sine_squared(t) / rough) ** -2
+    return (rough + 4 * _sine_squared(t, sine_squared) / rough) ** -2

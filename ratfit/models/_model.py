@@ -2,40 +2,73 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from functools import cached_property
+from typing import Any, TypeAlias
 
 import sympy as sp
 
 from ratfit._lower import lower
 from ratfit._parse import RatfitError, nearest
 from ratfit._target import Parameter
-from ratfit.models.directions import LETTERS, as_directions, as_floats, check_directions, cosines, library, traced
+from ratfit.models.directions import (
+    LETTERS,
+    SQUARES,
+    as_directions,
+    as_floats,
+    check_directions,
+    cosines,
+    library,
+    traced,
+)
+
+Formula: TypeAlias = sp.Expr | Callable[[], sp.Expr]
+"""An expression, or what makes it when it is first asked for: some take sympy long."""
 
 
 @dataclass(frozen=True, eq=False)  # a model is itself alone: so JAX may take it for the name of a function
 class Model:
     """A bidirectional reflectance distribution function (1/sr), without the cosine to the light.
 
-    `reflectance` is written in the letters of `ratfit.models.directions` and in `parameters`, and holds above the
-    horizon; below it the reflectance is 0. `coherent` is the share that is reflected as a mirror does, in the single
-    direction that is no function on arrays; `defaults` gives every parameter a value that shows the model well.
-    `source` is a key of docs/refs.bib and a place there. `facets` is the distribution D of a model that has one, per
-    steradian (its integral with the cosine t is to be 1), and `sampler` the name in `ratfit.models.samplers` of the one
-    that draws light for the model's lobe, whose parameters the model has too.
+    `formula` is written in the letters of `ratfit.models.directions`, squares included, and in `parameters`, and holds
+    above the horizon; below it the reflectance is 0. `mirror` is the share that is reflected as a mirror does, in the
+    single direction that is no function on arrays; `defaults` gives every parameter a value that shows the model well.
+    `source` is a key of docs/refs.bib and a place there. `distribution` is the D of a model that has one, per steradian
+    (its integral with the cosine t is to be 1), and `sampler` the name in `ratfit.models.samplers` of the one that
+    draws light for the model's lobe, whose parameters the model has too.
     """
 
     name: str
     title: str
-    reflectance: sp.Expr
+    formula: Formula
     parameters: tuple[Parameter, ...]
     source: str
     defaults: Mapping[str, float] = field(default_factory=dict)
-    coherent: sp.Expr = sp.S.Zero
+    mirror: Formula = sp.S.Zero
     note: str = ""
-    facets: sp.Expr | None = None
+    distribution: Formula | None = None
     sampler: str | None = None
+
+    @cached_property
+    def computed(self) -> sp.Expr:
+        """The reflectance in all letters, as arrays compute it."""
+        return _made(self.formula)
+
+    @cached_property
+    def reflectance(self) -> sp.Expr:
+        """The reflectance in the five cosines."""
+        return self.computed.xreplace(SQUARES)
+
+    @cached_property
+    def coherent(self) -> sp.Expr:
+        """The share of the mirror, in the cosine v."""
+        return _made(self.mirror)
+
+    @cached_property
+    def facets(self) -> sp.Expr | None:
+        """The distribution of facets in all letters, as arrays compute it."""
+        return None if self.distribution is None else _made(self.distribution)
 
     def __call__(self, view: Any, light: Any, *, strict: bool = False, **values: Any) -> Any:
         """The reflectance of pairs of directions.
@@ -71,11 +104,11 @@ class Model:
     def _above_horizon(self, backend: str, letters: tuple[Any, ...], known: Mapping[str, Any]) -> Any:
         """The formula where both directions are above the horizon; elsewhere 0, and no gradient comes from there."""
         _, numpy = library(*letters, *known.values())
-        _, _, v, v_prime, _ = letters
+        _, _, v, v_prime, *_ = letters
         inside = (v > 0) & (v_prime > 0)
         harmless = (numpy.where(inside, letter, 0.5).astype(letter.dtype) for letter in letters)
         typed = (numpy.asarray(known[p.name], v.dtype) for p in self.parameters)
-        value = lower(self.reflectance, [*LETTERS, *self.parameters], backend)(*harmless, *typed)
+        value = lower(self.computed, [*LETTERS, *SQUARES, *self.parameters], backend)(*harmless, *typed)
         return numpy.where(inside, value, 0).astype(value.dtype)
 
     def settings(self, values: Mapping[str, Any]) -> dict[str, Any]:
@@ -102,3 +135,7 @@ class Model:
         if not bool(numpy.all((array >= low) & (array <= high))):
             raise RatfitError(f"{self.name}: {parameter.name} = {value} is outside [{low:g}, {high:g}]")
         return array
+
+
+def _made(formula: Formula) -> sp.Expr:
+    return formula if isinstance(formula, sp.Expr) else formula()

@@ -17,6 +17,11 @@ def without_cosine(f: sp.Expr) -> sp.Expr:
     return f / sp.Max(V_PRIME, HORIZON)
 
 
+def powered(cosine: sp.Expr, exponent: sp.Expr) -> sp.Expr:
+    """A diffuse share and the `highlight` of a cosine, each with its colour."""
+    return without_cosine(DIFFUSE * V_PRIME + SPECULAR * highlight(cosine, exponent))
+
+
 def highlight(cosine: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     """clamp(cosine)**exponent; 0 where the cosine is not positive, for an exponent of 0 as well."""
     return guarded(lambda known: sp.Min(1, known) ** exponent, cosine, sp.S.Zero, cosine <= 0, sp.S.One)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ratfit._target import Parameter, parameter
-from ratfit.models.directions import V_PRIME, T, V, W
+from ratfit.models.directions import SINE2, V_PRIME, W2, T, V
 
 LOW, LOW_PRINTED = sp.Rational(1, 10**9), sp.Rational(1, 10**4)
 """Cosines below count as this where one divides by them, so that float32 holds the result; in print by more of them."""
@@ -75,30 +75,30 @@ def mirror(r: sp.Expr) -> sp.Expr:
 # --- Z, A and G ---
 
 
-def zenith(t: sp.Expr, r: sp.Expr) -> sp.Expr:
+def zenith(r: sp.Expr) -> sp.Expr:
     """Z = r/(1 + r t^2 - t^2)^2 (schlick1994, Eq. 28), for r > 0."""
-    return r / (r * t**2 + (1 - t) * (1 + t)) ** 2
+    return r / (r * T**2 + SINE2) ** 2
 
 
-def weighted_zenith(t: sp.Expr, r: sp.Expr) -> sp.Expr:
-    """b Z(t)/4 with the b of Eq. 33: finite for every r, and 0 for r = 0."""
-    return (1 - r) * r * zenith(t, sp.Max(r, NEARLY_MIRROR))
+def weighted_zenith(r: sp.Expr) -> sp.Expr:
+    """b Z/4 with the b of Eq. 33: finite for every r, and 0 for r = 0."""
+    return (1 - r) * r * zenith(sp.Max(r, NEARLY_MIRROR))
 
 
-def azimuth(w: sp.Expr, p: sp.Expr) -> sp.Expr:
+def azimuth(p: sp.Expr) -> sp.Expr:
     """A = p/(p^2 - p^2 w^2 + w^2), which keeps Eq. 27, for p > 0."""
-    return p / (p**2 * (1 - w) * (1 + w) + w**2)
+    return p / (p**2 * (1 - W2) + W2)
 
 
-def azimuth_as_printed(w: sp.Expr, p: sp.Expr) -> sp.Expr:
+def azimuth_as_printed(p: sp.Expr) -> sp.Expr:
     """A as schlick1994 prints it in Eq. 28: the square root of that which keeps Eq. 27."""
-    return sp.sqrt(azimuth(w, p))
+    return sp.sqrt(azimuth(p))
 
 
 def distributed(layer: Layer, *, printed: bool = False) -> sp.Expr:
     """Z A/pi, the distribution of the normals of the facets per steradian."""
     a = azimuth_as_printed if printed else azimuth
-    return zenith(T, sp.Max(layer.r, NEARLY_MIRROR)) * a(W, layer.p) / sp.pi
+    return zenith(sp.Max(layer.r, NEARLY_MIRROR)) * a(layer.p) / sp.pi
 
 
 def visible(v: sp.Expr, k: sp.Expr) -> sp.Expr:
@@ -118,19 +118,19 @@ def obstructed(r: sp.Expr) -> sp.Expr:
 
 # --- D ---
 
-Azimuth = Callable[[sp.Expr, sp.Expr], sp.Expr]
+Azimuth = Callable[[sp.Expr], sp.Expr]
 
 
 def facets(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
     """Z A/(4 pi v v') (schlick1994, Eq. 25)."""
-    return lambda layer: zenith(T, layer.r) * a(W, layer.p) / (4 * sp.pi * SEEN * LIT)
+    return lambda layer: zenith(layer.r) * a(layer.p) / (4 * sp.pi * SEEN * LIT)
 
 
 def reemitted(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
     """(G G' Z A + 1 - G G')/(4 pi v v') (schlick1994, Eq. 30)."""
 
     def formula(layer: Layer) -> sp.Expr:
-        whole = zenith(T, layer.r) * a(W, layer.p) * SEEN * LIT + obstructed(layer.r)
+        whole = zenith(layer.r) * a(layer.p) * SEEN * LIT + obstructed(layer.r)
         return whole / (4 * sp.pi * SEEN * LIT * both_visible(layer.r))
 
     return formula
@@ -140,7 +140,7 @@ def continuum_of_facets(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
     """a/pi + b times `facets` (schlick1994, Eq. 32 with B = Z A, Eq. 33)."""
 
     def formula(layer: Layer) -> sp.Expr:
-        lobe = weighted_zenith(T, layer.r) * a(W, layer.p)
+        lobe = weighted_zenith(layer.r) * a(layer.p)
         return weights(layer.r)[0] / sp.pi + lobe / (sp.pi * SEEN * LIT)
 
     return formula
@@ -151,7 +151,7 @@ def continuum(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
 
     def formula(layer: Layer) -> sp.Expr:
         diffuse, b, _ = weights(layer.r)
-        whole = weighted_zenith(T, layer.r) * a(W, layer.p) * SEEN * LIT + b / 4 * obstructed(layer.r)
+        whole = weighted_zenith(layer.r) * a(layer.p) * SEEN * LIT + b / 4 * obstructed(layer.r)
         return diffuse / sp.pi + whole / (sp.pi * SEEN * LIT * both_visible(layer.r))
 
     return formula

@@ -5,7 +5,7 @@ import sympy as sp
 from ratfit._target import parameter
 from ratfit.models import _mixture, _scanline
 from ratfit.models._model import Model
-from ratfit.models.directions import V_PRIME, T
+from ratfit.models.directions import T
 
 EXPONENT = parameter("exponent", 0, 10_000)
 
@@ -24,7 +24,7 @@ def normalisation(exponent: sp.Expr) -> sp.Expr:
 BLINN = Model(
     "blinn",
     "Blinn's model, normalised",
-    _mixture.mixture(normalisation(EXPONENT) * _scanline.highlight(T, EXPONENT)),
+    lambda: _mixture.mixture(normalisation(EXPONENT) * _scanline.highlight(T, EXPONENT)),
     (*_mixture.PARAMETERS, EXPONENT),
     "blinn1977; the normalisation is derived in `normalisation`",
     {**_mixture.DEFAULTS, "exponent": 200.0},
@@ -35,7 +35,7 @@ BLINN = Model(
 BLINN_AS_PRINTED = Model(
     "blinn-as-printed",
     "Blinn's model as printed: not reciprocal, unbounded at the horizon of the light",
-    _scanline.without_cosine(_scanline.DIFFUSE * V_PRIME + _scanline.SPECULAR * _scanline.highlight(T, EXPONENT)),
+    lambda: _scanline.powered(T, EXPONENT),
     (_scanline.DIFFUSE, _scanline.SPECULAR, EXPONENT),
     "polimi2024, The Blinn reflection model",
     {"diffuse": 0.5, "specular": 0.5, "exponent": 200.0},

@@ -24,7 +24,7 @@ import sympy as sp
 
 from ratfit.models._model import Model
 from ratfit.models._schlick import Layer, azimuth, both_visible, distributed, layer, mirror, weighted_zenith, weights
-from ratfit.models.directions import V_PRIME, T, U, V, W
+from ratfit.models.directions import V_PRIME, U, V
 from ratfit.models.schlick import DEFAULTS, SPECTRAL
 
 ENDS = sp.Rational(1, 10)
@@ -79,7 +79,7 @@ def _polynomial(alpha: sp.Expr, p: sp.Expr, of_v: list[sp.Expr]) -> sp.Expr:
 
 def facets(layer: Layer) -> sp.Expr:
     """b times G G' Z A/(4 pi v v') with k = sqrt(r)/(1 + p) in place of r, of albedo 1 at most."""
-    lobe = weighted_zenith(T, layer.r) * azimuth(W, layer.p)
+    lobe = weighted_zenith(layer.r) * azimuth(layer.p)
     return lobe / (sp.pi * both_visible(roughness(layer.r) / (1 + layer.p)))
 
 
@@ -111,7 +111,7 @@ def conserving(spectral: str, name: str) -> Model:
         f"schlick1994, Eqs. 22, 28, 32, 33 and {where[4:]}; kulla2017",
         {p.name: value for p, value in zip(one, DEFAULTS[0], strict=True)},
         s(V, one.c) * mirror(one.r),
-        facets=distributed(one),
+        distribution=lambda: distributed(one),
         sampler="schlick",
         note="The albedo is at most 1, C = 1 included; the part of it that C = 1, p = 1 lose is 1.8 % at most.",
     )

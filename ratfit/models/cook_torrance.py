@@ -21,7 +21,7 @@ from ratfit._target import Parameter, parameter
 from ratfit.brdf import distribution, fresnel, masking
 from ratfit.models._mixture import DIFFUSE, SHARE, SPECULAR, mixture
 from ratfit.models._model import Model
-from ratfit.models.directions import HORIZON, LETTERS, V_PRIME, T, U, V
+from ratfit.models.directions import HORIZON, SINE2, V_PRIME, T, U, V
 
 ALPHA = parameter("alpha", "1/100", 1)
 EXPONENT = parameter("exponent", 0, 10_000)
@@ -40,6 +40,7 @@ class Factor:
 
     make: Callable[[], sp.Expr]
     source: str
+    parameters: tuple[Parameter, ...] = ()
 
     @cached_property
     def formula(self) -> sp.Expr:
@@ -62,37 +63,38 @@ def _each(one_sided: Callable[[sp.Expr, sp.Expr], sp.Expr], roughness: sp.Expr) 
 AXIS = ALPHA / sp.sqrt(2)
 
 DISTRIBUTIONS: Mapping[str, Factor] = {
-    "beckmann": Factor(lambda: distribution.beckmann(T, ALPHA), "schlick1994, Eq. 20"),
-    "beckmann-rational": Factor(lambda: distribution.beckmann_rational(T, ALPHA), "schlick1994, Eq. 21"),
-    "ggx": Factor(lambda: distribution.ggx(T, ALPHA), "microfacet, D term; polimi2024"),
-    "phong": Factor(lambda: distribution.phong(T, EXPONENT), "microfacet, D term"),
-    "blinn": Factor(lambda: distribution.blinn(T, ALPHA), "polimi2024, D"),
+    "beckmann": Factor(lambda: distribution.beckmann(T, ALPHA, SINE2), "schlick1994, Eq. 20", (ALPHA,)),
+    "beckmann-rational": Factor(lambda: distribution.beckmann_rational(T, ALPHA), "schlick1994, Eq. 21", (ALPHA,)),
+    "ggx": Factor(lambda: distribution.ggx(T, ALPHA, SINE2), "microfacet, D term; polimi2024", (ALPHA,)),
+    "phong": Factor(lambda: distribution.phong(T, EXPONENT), "microfacet, D term", (EXPONENT,)),
+    "blinn": Factor(lambda: distribution.blinn(T, ALPHA), "polimi2024, D", (ALPHA,)),
 }
 SAMPLED_AS = {"beckmann-rational": "ggx"}
 """The sampler of a distribution that has none of its own name."""
 
 FRESNELS: Mapping[str, Factor] = {
-    "conductor": Factor(lambda: fresnel.conductor(U, ETA, KAPPA), "schlick1994, Eq. 13"),
-    "dielectric": Factor(lambda: fresnel.dielectric(U, ETA), "microfacet, F term"),
+    "conductor": Factor(lambda: fresnel.conductor(U, ETA, KAPPA), "schlick1994, Eq. 13", (ETA, KAPPA)),
+    "dielectric": Factor(lambda: fresnel.dielectric(U, ETA), "microfacet, F term", (ETA,)),
     "spectral": Factor(
         lambda: fresnel.spectral(fresnel.conductor(U, ETA, KAPPA), fresnel.normal(ETA, KAPPA), F_NORMAL),
         "schlick1994, Eq. 14",
+        (ETA, KAPPA, F_NORMAL),
     ),
-    "schlick": Factor(lambda: fresnel.schlick(U, F_NORMAL), "schlick1994, Eq. 15; microfacet; polimi2024"),
+    "schlick": Factor(lambda: fresnel.schlick(U, F_NORMAL), "schlick1994, Eq. 15; microfacet; polimi2024", (F_NORMAL,)),
 }
 MASKINGS: Mapping[str, Factor] = {
     "torrance-sparrow": Factor(
         _both(lambda: masking.torrance_sparrow(T, U, V, V_PRIME)), "schlick1994, Eq. 16; polimi2024"
     ),
-    "smith": Factor(_each(masking.smith, AXIS), "schlick1994, Eqs. 17 and 18, by smith1967"),
-    "smith-as-printed": Factor(_each(masking.smith_as_printed, ALPHA), "schlick1994, Eqs. 17 and 18"),
-    "schlick": Factor(_each(masking.schlick, AXIS), "schlick1994, Eqs. 17 and 19"),
-    "schlick-as-printed": Factor(_each(masking.schlick, ALPHA), "schlick1994, Eqs. 17 and 19"),
-    "beckmann": Factor(_each(masking.beckmann, ALPHA), "walter2007, Eq. 26"),
-    "beckmann-rational": Factor(_each(masking.beckmann_rational, ALPHA), "microfacet, G term (Beckmann)"),
-    "phong": Factor(_each(masking.phong, EXPONENT), "microfacet, G term (Phong)"),
-    "ggx": Factor(_each(masking.ggx, ALPHA), "microfacet, G term (GGX); polimi2024"),
-    "ggx-correlated": Factor(_both(lambda: masking.ggx_correlated(V, V_PRIME, ALPHA)), "heitz2014, Eq. 99"),
+    "smith": Factor(_each(masking.smith, AXIS), "schlick1994, Eqs. 17 and 18, by smith1967", (ALPHA,)),
+    "smith-as-printed": Factor(_each(masking.smith_as_printed, ALPHA), "schlick1994, Eqs. 17 and 18", (ALPHA,)),
+    "schlick": Factor(_each(masking.schlick, AXIS), "schlick1994, Eqs. 17 and 19", (ALPHA,)),
+    "schlick-as-printed": Factor(_each(masking.schlick, ALPHA), "schlick1994, Eqs. 17 and 19", (ALPHA,)),
+    "beckmann": Factor(_each(masking.beckmann, ALPHA), "walter2007, Eq. 26", (ALPHA,)),
+    "beckmann-rational": Factor(_each(masking.beckmann_rational, ALPHA), "microfacet, G term (Beckmann)", (ALPHA,)),
+    "phong": Factor(_each(masking.phong, EXPONENT), "microfacet, G term (Phong)", (EXPONENT,)),
+    "ggx": Factor(_each(masking.ggx, ALPHA), "microfacet, G term (GGX); polimi2024", (ALPHA,)),
+    "ggx-correlated": Factor(_both(lambda: masking.ggx_correlated(V, V_PRIME, ALPHA)), "heitz2014, Eq. 99", (ALPHA,)),
     "kelemen": Factor(
         _both(lambda: masking.kelemen(U, V, V_PRIME)), "microfacet, visibility, the better approximation"
     ),
@@ -107,6 +109,7 @@ class Sum:
 
     formula: Callable[[sp.Expr], sp.Expr]
     source: str
+    parameters: tuple[Parameter, ...]
     note: str = ""
 
 
@@ -114,12 +117,15 @@ POLIMI = "polimi2024, with k = 1 - specular_share"
 COSINE = "The source's f contains the cosine to the light, a reflectance does not."
 
 SUMS: Mapping[str, Sum] = {
-    "schlick1994": Sum(lambda lobe: (1 - SHARE) * DIFFUSE / sp.pi + SHARE * lobe, "schlick1994, Eq. 8"),
-    "microfacet": Sum(lambda lobe: DIFFUSE / sp.pi + lobe, "microfacet"),
-    "polimi2024": Sum(mixture, POLIMI, COSINE),
+    "schlick1994": Sum(
+        lambda lobe: (1 - SHARE) * DIFFUSE / sp.pi + SHARE * lobe, "schlick1994, Eq. 8", (DIFFUSE, SHARE)
+    ),
+    "microfacet": Sum(lambda lobe: DIFFUSE / sp.pi + lobe, "microfacet", (DIFFUSE,)),
+    "polimi2024": Sum(mixture, POLIMI, (DIFFUSE, SPECULAR, SHARE), COSINE),
     "polimi2024-as-printed": Sum(
         lambda lobe: (1 - SHARE) * DIFFUSE + SHARE * SPECULAR * lobe,
         POLIMI,
+        (DIFFUSE, SPECULAR, SHARE),
         f"{COSINE} D has its 1/pi there and the diffuse share none: white reflects pi times what falls on it.",
     ),
 }
@@ -140,25 +146,20 @@ def cook_torrance(
         if chosen not in table:
             raise RatfitError(f"no factor {chosen!r}{nearest(chosen, table)}; there are: {', '.join(table)}")
     d, f, g, how = DISTRIBUTIONS[distribution], FRESNELS[fresnel], MASKINGS[masking], SUMS[added]
-    reflectance = how.formula(d.formula * f.formula * g.formula / 4)
     made_of = f"{distribution}, {fresnel}, {masking}"
+    parts = (how, d, f, g)
+    parameters = tuple(p for p in DEFAULTS if any(p in part.parameters for part in parts))
     return Model(
         name or f"cook-torrance({made_of}, {added})",
         title or f"Micro-facets: {made_of}",
-        reflectance,
-        parameters_of(reflectance),
-        "; ".join((how.source, d.source, f.source, g.source)),
-        {p.name: DEFAULTS[p] for p in parameters_of(reflectance)},
+        lambda: how.formula(d.formula * f.formula * g.formula / 4),
+        parameters,
+        "; ".join(part.source for part in parts),
+        {p.name: DEFAULTS[p] for p in parameters},
         note=how.note,
-        facets=d.formula,
+        distribution=lambda: d.formula,
         sampler=SAMPLED_AS.get(distribution, distribution),
     )
-
-
-def parameters_of(reflectance: sp.Expr) -> tuple[Parameter, ...]:
-    """The parameters of this module that a formula has, in the order of `DEFAULTS`."""
-    there = reflectance.free_symbols - set(LETTERS)
-    return tuple(p for p in DEFAULTS if p in there)
 
 
 COOK_TORRANCE: tuple[Model, ...] = tuple(

@@ -1,14 +1,19 @@
-"""Pairs of directions, and the five cosines by which a reflectance depends on them.
+"""Pairs of directions, and the five cosines by which a reflectance depends on them, two of them squared as well.
 
 Directions are arrays of shape (..., 3) in the local frame of the surface: the normal N is +z, the tangent +x. In the
 letters of schlick1994, H being the half vector of the view V and the light V': `t` = N.H, `u` = H.V, `v` = N.V,
 `v_prime` = N.V', and `w` the cosine of the azimuth of H against the tangent, folded into the first quadrant. Further
 products follow: V.V' = 2 u^2 - 1, |V + V'| = 2 u, and t = (v + v')/(2 u).
+
+Near N a cosine says little of the angle: of 1 - t^2 below 1e-7 a float32 t has no digit. What a narrow lobe is made of
+is therefore a letter too, s2 = 1 - t^2, taken from the tangential part of V + V' with all its digits; and w2 = w^2,
+which costs no square root.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from typing import Any
 
 import sympy as sp
@@ -19,6 +24,12 @@ from ratfit._target import parameter
 T, U, V, V_PRIME, W = (parameter(name, 0, 1) for name in ("t", "u", "v", "v_prime", "w"))
 LETTERS = (T, U, V, V_PRIME, W)
 """The symbols that a model's formula is written in, beside its parameters."""
+
+SINE2, W2 = parameter("s2", 0, 1), parameter("w2", 0, 1)
+"""1 - t^2 and w^2, for formulas that are computed on arrays."""
+
+SQUARES: Mapping[sp.Expr, sp.Expr] = {SINE2: (1 - T) * (1 + T), W2: W**2}
+"""What the squares are in the cosines."""
 
 V_DOT_L = 2 * U**2 - 1
 """The cosine of the angle between the two directions."""
@@ -78,20 +89,24 @@ def traced(value: Any) -> bool:
 
 
 def cosines(view: Any, light: Any) -> tuple[Any, ...]:
-    """t, u, v, v' and w of pairs of unit directions, of the shape that both broadcast to without the last axis.
+    """t, u, v, v', w, 1 - t^2 and w^2 of pairs of unit directions, of the shape that both broadcast to, less the last.
 
-    None is above 1, whatever the rounding. At N = H, where H has no azimuth, w is 1; at V' = -V, where there is no H,
-    t is 0; both within `SHORT`, so that gradients stay finite in float32 too.
+    No cosine is above 1, whatever the rounding, and no square by more than the rounding. At N = H, where H has no
+    azimuth, w is 1; at V' = -V, where there is no H, t is 0; both within `SHORT`, so that gradients stay finite in
+    float32 too.
     """
     _, numpy = library(view, light)
     # Coordinate by coordinate, each function once: so XLA makes one loop of it all, which is twice as fast.
     x, y, z = (view[..., axis] + light[..., axis] for axis in range(3))
     across = x * x + y * y
     length = _where_above(numpy, SHORT**2, across + z * z, numpy.sqrt, 0)
-    t = _where_above(numpy, SHORT, length, lambda known: numpy.maximum(z / known, 0), 0)
+    one_over = _where_above(numpy, SHORT, length, lambda known: 1 / known, 0)
+    t = numpy.maximum(z * one_over, 0)
+    sine2 = _where_above(numpy, SHORT, length, lambda known: across * one_over * one_over, 1)
+    w2 = _where_above(numpy, SHORT**2, across, lambda known: x * x / known, 1)
     w = _where_above(numpy, SHORT**2, across, lambda known: abs(x) / numpy.sqrt(known), 1)
     v, v_prime = numpy.broadcast_arrays(view[..., 2], light[..., 2])
-    return tuple(_at_most_one(numpy, cosine) for cosine in (t, length / 2, v, v_prime, w))
+    return *(_at_most_one(numpy, cosine) for cosine in (t, length / 2, v, v_prime, w)), sine2, w2
 
 
 def _at_most_one(numpy: Any, cosine: Any) -> Any:

@@ -42,19 +42,24 @@ def attenuated(v: sp.Expr, v_prime: sp.Expr, sigma: sp.Expr) -> sp.Expr:
 
 def he(weight: sp.Expr, name: str, title: str) -> Model:
     """The model with this weight on the lobe of the facets; its mirror's share is s F(v) G(v)^2 A(v, v)."""
-    lobe = weight * DISTRIBUTIONS["beckmann"].formula * FRESNELS["conductor"].formula * MASKINGS["smith"].formula / 4
+
+    def formula() -> sp.Expr:
+        factors = DISTRIBUTIONS["beckmann"], FRESNELS["conductor"], MASKINGS["smith"]
+        return (1 - SHARE) * DIFFUSE / sp.pi + SHARE * weight * sp.Mul(*(factor.formula for factor in factors)) / 4
+
+    def mirror() -> sp.Expr:
+        masked = masking.separable(masking.smith, V, V, AXIS)
+        return SHARE * fresnel.conductor(V, ETA, KAPPA) * masked * attenuation(V, V, SIGMA)
+
     return Model(
         name,
         title,
-        (1 - SHARE) * DIFFUSE / sp.pi + SHARE * lobe,
+        formula,
         PARAMETERS,
         "schlick1994, Eq. 9; he1991",
         {**{p.name: DEFAULTS[p] for p in PARAMETERS if p in DEFAULTS}, SIGMA.name: 0.1},
-        SHARE
-        * fresnel.conductor(V, ETA, KAPPA)
-        * masking.separable(masking.smith, V, V, AXIS)
-        * attenuation(V, V, SIGMA),
-        facets=DISTRIBUTIONS["beckmann"].formula,
+        mirror,
+        distribution=lambda: DISTRIBUTIONS["beckmann"].formula,
         sampler="beckmann",
     )
 

@@ -10,7 +10,7 @@ ALBEDO = parameter("albedo", 0, 1)
 LAMBERT = Model(
     "lambert",
     "Lambert's diffuse reflector",
-    ALBEDO / sp.pi,
+    lambda: ALBEDO / sp.pi,
     (ALBEDO,),
     "schlick1994, Eq. 8",
     {"albedo": 1.0},

@@ -68,7 +68,7 @@ def _entry(p: float, q: float) -> float:
 OREN_NAYAR = Model(
     "oren-nayar",
     "Oren and Nayar's rough diffuse reflector",
-    ALBEDO / sp.pi * direct(),
+    lambda: ALBEDO / sp.pi * direct(),
     (ALBEDO, SIGMA),
     "orennayar1994; polimi2024, Oren-Nayar",
     {"albedo": 0.8, "sigma": 0.5},
@@ -81,7 +81,7 @@ OREN_NAYAR = Model(
 OREN_NAYAR_TABLED = Model(
     "oren-nayar-tabled",
     "Oren and Nayar's rough diffuse reflector, by a table",
-    ALBEDO / sp.pi * tabled(),
+    lambda: ALBEDO / sp.pi * tabled(),
     (ALBEDO, SIGMA),
     "polimi2024, Oren-Nayar, the second form",
     {"albedo": 0.8, "sigma": 0.5},
@@ -91,7 +91,7 @@ OREN_NAYAR_TABLED = Model(
 OREN_NAYAR_AS_PRINTED = Model(
     "oren-nayar-as-printed",
     "Oren and Nayar's rough diffuse reflector as printed, without 1/pi",
-    _scanline.DIFFUSE * direct(),
+    lambda: _scanline.DIFFUSE * direct(),
     (_scanline.DIFFUSE, SIGMA),
     "polimi2024, Oren-Nayar",
     {"diffuse": 0.8, "sigma": 0.5},

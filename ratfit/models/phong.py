@@ -4,14 +4,14 @@ from ratfit._target import parameter
 from ratfit.brdf import distribution
 from ratfit.models import _mixture, _scanline
 from ratfit.models._model import Model
-from ratfit.models.directions import R_DOT_V, V_PRIME
+from ratfit.models.directions import R_DOT_V
 
 EXPONENT = parameter("exponent", 0, 10_000)
 
 PHONG = Model(
     "phong",
     "Phong's model, normalised",
-    _mixture.mixture(distribution.phong(R_DOT_V, EXPONENT)),
+    lambda: _mixture.mixture(distribution.phong(R_DOT_V, EXPONENT)),
     (*_mixture.PARAMETERS, EXPONENT),
     "phong1975; lafortune1994",
     {**_mixture.DEFAULTS, "exponent": 50.0},
@@ -21,7 +21,7 @@ PHONG = Model(
 PHONG_AS_PRINTED = Model(
     "phong-as-printed",
     "Phong's model as printed: not reciprocal, unbounded at the horizon of the light",
-    _scanline.without_cosine(_scanline.DIFFUSE * V_PRIME + _scanline.SPECULAR * _scanline.highlight(R_DOT_V, EXPONENT)),
+    lambda: _scanline.powered(R_DOT_V, EXPONENT),
     (_scanline.DIFFUSE, _scanline.SPECULAR, EXPONENT),
     "polimi2024, The Phong reflection model",
     {"diffuse": 0.5, "specular": 0.5, "exponent": 50.0},

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
@@ -13,8 +13,8 @@ from ratfit._lower import lower
 from ratfit._parse import RatfitError, nearest
 from ratfit._target import Parameter, parameter
 from ratfit.brdf import distribution, roughness, sampling
-from ratfit.models._model import Model
-from ratfit.models.directions import V_PRIME, T, U, W, as_directions, library
+from ratfit.models._model import Formula, Model
+from ratfit.models.directions import SINE2, V_PRIME, T, U, W, as_directions, library, traced
 
 A, B = (parameter(name, 0, 1) for name in ("a", "b"))
 """The two uniform numbers that the formulas of a sampler are written in, beside its parameters."""
@@ -49,7 +49,8 @@ class Sampler:
         or JAX, traced too; `values`, the sampler's parameters by name.
 
         **Returns** unit directions. Some are below the horizon: they are part of the density's whole and carry nothing.
-        **Fails** with `RatfitError` for other shapes, and for a parameter that is unknown or outside its range.
+        **Fails** with `RatfitError` for other shapes, for numbers outside [0, 1] (not inside a transformation of JAX,
+        which has no numbers to look at), and for a parameter that is unknown or outside its range.
         """
         view, pair = as_directions(view, "view"), _pairs(pair)
         known = self.pdf.settings(values)
@@ -123,15 +124,17 @@ def _own(sampler: Sampler, stated: Mapping[str, float], values: Mapping[str, Any
 
 
 def _pairs(given: Any) -> Any:
-    """An array of pairs of numbers. **Fails** with `RatfitError` for another shape."""
+    """An array of pairs of numbers in [0, 1]. **Fails** with `RatfitError` for another shape and for others."""
     _, numpy = library(given)
     array = numpy.asarray(given)
     if array.ndim == 0 or array.shape[-1] != 2 or not numpy.issubdtype(array.dtype, numpy.floating):
         raise RatfitError(f"a random pair of the shape {array.shape}: two uniform floats are needed, shape (..., 2)")
+    if not traced(array) and not bool(numpy.all((array >= 0) & (array <= 1))):
+        raise RatfitError("a random pair has a number outside [0, 1]: draw both uniformly from there")
     return array
 
 
-def _density(name: str, formula: sp.Expr, defaults: Mapping[Parameter, float], source: str) -> Model:
+def _density(name: str, formula: Formula, defaults: Mapping[Parameter, float], source: str) -> Model:
     named = {p.name: value for p, value in defaults.items()}
     return Model(name, f"density of the sampler {name}", formula, tuple(defaults), source, named)
 
@@ -140,12 +143,12 @@ def _facets(
     name: str,
     angles: tuple[sp.Expr, sp.Expr],
     azimuth: sp.Expr,
-    facets: sp.Expr,
+    facets: Callable[[], sp.Expr],
     defaults: Mapping[Parameter, float],
     source: str,
 ) -> Sampler:
     """A sampler of half vectors: cosine and sine, azimuth, and the distribution they are drawn from."""
-    pdf = _density(name, sampling.light_density(facets, T, U), defaults, source)
+    pdf = _density(name, lambda: sampling.light_density(facets(), T, U), defaults, source)
     return Sampler(name, *angles, azimuth, pdf)
 
 
@@ -178,7 +181,9 @@ COSINE = Sampler(
     "cosine", sampling.cosine_cosine(A), sampling.cosine_sine(A), ROUND,
     _density("cosine", sampling.cosine_density(V_PRIME), {}, "schlick1994, Eq. 8"), is_half=False,
 )  # fmt: skip
-GGX = _facets("ggx", _ggx(ALPHA), ROUND, distribution.ggx(T, ALPHA), {ALPHA: 0.3}, "walter2007, Eqs. 35 and 36")
+GGX = _facets(
+    "ggx", _ggx(ALPHA), ROUND, lambda: distribution.ggx(T, ALPHA, SINE2), {ALPHA: 0.3}, "walter2007, Eqs. 35 and 36"
+)
 
 SAMPLERS: Mapping[str, Sampler] = MappingProxyType(
     {
@@ -186,20 +191,22 @@ SAMPLERS: Mapping[str, Sampler] = MappingProxyType(
         for sampler in (
             COSINE,
             GGX,
-            _facets("beckmann", _beckmann(ALPHA), ROUND, distribution.beckmann(T, ALPHA), {ALPHA: 0.3},
-                    "walter2007, Eqs. 28 and 29"),
-            _facets("phong", _phong(EXPONENT), ROUND, distribution.phong(T, EXPONENT), {EXPONENT: 20.0},
-                    "walter2007, Eqs. 31 and 32"),
-            _facets("blinn", _phong(2 / ALPHA**2 - 2), ROUND, distribution.blinn(T, ALPHA), {ALPHA: 0.3},
-                    "polimi2024, D; walter2007, Eq. 31"),
+            _facets("beckmann", _beckmann(ALPHA), ROUND,
+                    lambda: distribution.beckmann(T, ALPHA, SINE2), {ALPHA: 0.3}, "walter2007, Eqs. 28 and 29"),
+            _facets("phong", _phong(EXPONENT), ROUND,
+                    lambda: distribution.phong(T, EXPONENT), {EXPONENT: 20.0}, "walter2007, Eqs. 31 and 32"),
+            _facets("blinn", _phong(2 / ALPHA**2 - 2), ROUND,
+                    lambda: distribution.blinn(T, ALPHA), {ALPHA: 0.3}, "polimi2024, D; walter2007, Eq. 31"),
             _facets("ward", _beckmann(roughness.alpha_at(sp.cos(ELLIPSE), M, N)), ELLIPSE,
-                    distribution.ward(T, W, M, N), {M: 0.15, N: 0.4}, "ward1992"),
-            _facets("smoothie", _ggx(roughness.ggx_from_wide(WIDE)), ROUND, distribution.smoothie(T, WIDE),
-                    {ROUGHNESS: 0.4}, "smoothie; walter2007, Eq. 35"),
-            _facets("schlick", _ggx(sp.sqrt(R)), sampling.full_azimuth(B, P), distribution.schlick(T, W, R, P),
-                    {R: 0.3, P: 0.5}, "schlick1994, Eq. 29, the azimuth corrected"),
+                    lambda: distribution.ward(T, W, M, N, SINE2), {M: 0.15, N: 0.4}, "ward1992"),
+            _facets("smoothie", _ggx(roughness.ggx_from_wide(WIDE)), ROUND,
+                    lambda: distribution.smoothie(T, WIDE, SINE2), {ROUGHNESS: 0.4}, "smoothie; walter2007, Eq. 35"),
+            _facets("schlick", _ggx(sp.sqrt(R)), sampling.full_azimuth(B, P),
+                    lambda: distribution.schlick(T, W, R, P, SINE2), {R: 0.3, P: 0.5},
+                    "schlick1994, Eq. 29, the azimuth corrected"),
             _facets("schlick-as-printed", _ggx(sp.sqrt(R)), _printed_azimuth(B, P),
-                    distribution.schlick_as_printed(T, W, R, P), {R: 0.3, P: 0.5}, "schlick1994, Eq. 29"),
+                    lambda: distribution.schlick_as_printed(T, W, R, P, SINE2), {R: 0.3, P: 0.5},
+                    "schlick1994, Eq. 29"),
         )
     }
 )  # fmt: skip

@@ -5,7 +5,7 @@ import sympy as sp
 from ratfit._target import parameter
 from ratfit.brdf import distribution, fresnel
 from ratfit.models._model import Model
-from ratfit.models.directions import HORIZON, T, U
+from ratfit.models.directions import HORIZON, SINE2, T, U
 
 GLOSS = parameter("gloss", 0, 1)
 ROUGHNESS = parameter("roughness", "1/100", 1)
@@ -22,50 +22,50 @@ PUNCTUAL = "Its albedo comes to pi, not 1, for small roughness: it is meant for 
 
 def approximate() -> sp.Expr:
     """(alpha + |h - N (N.h)|^2/alpha)^-2: the tangential part of h has the length 2 u sin(theta_m)."""
-    tangential = 4 * U**2 * (1 - T) * (1 + T)
+    tangential = 4 * U**2 * SINE2
     return (ALPHA + tangential / ALPHA) ** -2
 
 
 SMOOTHIE = Model(
     "smoothie",
     "Smoothie, normalised",
-    FRESNEL * distribution.smoothie(T, ALPHA) / H_SQUARED,
+    lambda: FRESNEL * distribution.smoothie(T, ALPHA, SINE2) / H_SQUARED,
     PARAMETERS,
     "smoothie, Microfacet Smoothie, with the factor (4 + alpha^2)/pi that normalises its D",
     DEFAULTS,
     note="D F G/(4 v v') with G = 4 v v'/(h.h); gloss is the reflectance at normal incidence.",
-    facets=distribution.smoothie(T, ALPHA),
+    distribution=lambda: distribution.smoothie(T, ALPHA, SINE2),
     sampler="smoothie",
 )
 
 SMOOTHIE_AS_PRINTED = Model(
     "smoothie-as-printed",
     "Smoothie as its text prints it: D is not normalised",
-    FRESNEL * distribution.smoothie_as_printed(T, ALPHA) / H_SQUARED,
+    lambda: FRESNEL * distribution.smoothie_as_printed(T, ALPHA, SINE2) / H_SQUARED,
     PARAMETERS,
     "smoothie, Microfacet Smoothie",
     DEFAULTS,
     note="The integral of D times the cosine is pi/(4 + alpha^2) in place of 1.",
-    facets=distribution.smoothie_as_printed(T, ALPHA),
+    distribution=lambda: distribution.smoothie_as_printed(T, ALPHA, SINE2),
     sampler="smoothie",
 )
 
 SMOOTHIE_CODE_AS_PRINTED = Model(
     "smoothie-code-as-printed",
     "Smoothie as its code computes it: it takes H for h and so loses h.h",
-    FRESNEL * distribution.smoothie_as_printed(T, ALPHA),
+    lambda: FRESNEL * distribution.smoothie_as_printed(T, ALPHA, SINE2),
     PARAMETERS,
     "smoothie, Implementation",
     DEFAULTS,
     note=PUNCTUAL,
-    facets=distribution.smoothie_as_printed(T, ALPHA),
+    distribution=lambda: distribution.smoothie_as_printed(T, ALPHA, SINE2),
     sampler="smoothie",
 )
 
 SMOOTHIE_APPROXIMATE = Model(
     "smoothie-approximate",
     "Approximate Smoothie, normalised",
-    (1 + ALPHA**2) / sp.pi * FRESNEL * approximate(),
+    lambda: (1 + ALPHA**2) / sp.pi * FRESNEL * approximate(),
     PARAMETERS,
     "smoothie, Approximate Smoothie, with the factor (1 + alpha^2)/pi",
     DEFAULTS,
@@ -79,7 +79,7 @@ SMOOTHIE_APPROXIMATE = Model(
 SMOOTHIE_APPROXIMATE_AS_PRINTED = Model(
     "smoothie-approximate-as-printed",
     "Approximate Smoothie as printed",
-    FRESNEL * approximate(),
+    lambda: FRESNEL * approximate(),
     PARAMETERS,
     "smoothie, Approximate Smoothie",
     DEFAULTS,

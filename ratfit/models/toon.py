@@ -23,12 +23,16 @@ def two_tones(name: str, title: str, cosine: sp.Expr) -> Model:
 
     **Arguments:** the model's name and title; the cosine of the highlight, `R_DOT_V` (Phong's) or `T` (Blinn's).
     """
-    diffuse = sp.Piecewise((LIT, V_PRIME >= DIFFUSE_THRESHOLD), (DARK, True))
-    specular = sp.Piecewise((SHINING, cosine >= SPECULAR_THRESHOLD), (DULL, True))
+
+    def formula() -> sp.Expr:
+        diffuse = sp.Piecewise((LIT, V_PRIME >= DIFFUSE_THRESHOLD), (DARK, True))
+        specular = sp.Piecewise((SHINING, cosine >= SPECULAR_THRESHOLD), (DULL, True))
+        return _scanline.without_cosine(diffuse + specular)
+
     return Model(
         name,
         title,
-        _scanline.without_cosine(diffuse + specular),
+        formula,
         (LIT, DARK, DIFFUSE_THRESHOLD, SHINING, DULL, SPECULAR_THRESHOLD),
         "polimi2024, Toon shading",
         {
@@ -45,11 +49,15 @@ def tabled(name: str, title: str, cosine: sp.Expr, diffuse: Sequence[float], spe
     **Arguments:** the model's name and title; the cosine of the highlight, `R_DOT_V` or `T`; the entries of the two
     tables, two or more finite numbers each. The model's parameters are the colours that the entries multiply.
     """
-    f = _scanline.DIFFUSE * _tone(V_PRIME, diffuse) + _scanline.SPECULAR * _tone(cosine, specular)
+
+    def formula() -> sp.Expr:
+        tones = _scanline.DIFFUSE * _tone(V_PRIME, diffuse) + _scanline.SPECULAR * _tone(cosine, specular)
+        return _scanline.without_cosine(tones)
+
     return Model(
         name,
         title,
-        _scanline.without_cosine(f),
+        formula,
         (_scanline.DIFFUSE, _scanline.SPECULAR),
         "polimi2024, Toon shading",
         {"diffuse": 0.6, "specular": 0.4},

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from ratfit._lower import lower
 from ratfit.models._half_sphere import azimuth_panels, polar_panels, unit_gauss
 from ratfit.models._model import Model
-from ratfit.models.directions import LETTERS
+from ratfit.models.directions import LETTERS, SQUARES
 from ratfit.models.laws.law import NOT_APPLICABLE, UNDECIDED, Law, verdict
 from ratfit.models.laws.settings import Setting, settings
 
@@ -51,7 +50,7 @@ def _settled(model: Model, setting: Setting) -> tuple[float, float]:
 
 
 def _integral(model: Model, setting: Setting, order: int) -> float:
-    function = lower(model.facets, [*LETTERS, *model.parameters])
+    function = lower(model.facets, [*LETTERS, *SQUARES, *model.parameters])
     values = [setting[p.name] for p in model.parameters]
     y_phi, w_phi = unit_gauss(order)
     total = 0.0
@@ -61,7 +60,7 @@ def _integral(model: Model, setting: Setting, order: int) -> float:
         for panel in polar_panels(math.pi / 2):
             y, weight = unit_gauss(4 * order)
             theta = panel.place(y)
-            t: Any = np.cos(theta)
-            found = function(t, 1.0, 1.0, 1.0, w, *values)
-            total += float(np.sum(found * t * np.sin(theta) * weight * panel.slope(y) * across))
+            t, sine = np.cos(theta), np.sin(theta)
+            found = function(t, 1.0, 1.0, 1.0, w, sine**2, w**2, *values)
+            total += float(np.sum(found * t * sine * weight * panel.slope(y) * across))
     return total

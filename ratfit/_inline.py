@@ -12,6 +12,9 @@ from ratfit._problem import Problem
 from ratfit._problem_file import problem_of
 from ratfit._target import Target
 
+_NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
+"""A name in an expression; the e of 1e3 is none."""
+
 UNNAMED = "expression"
 """The name of every problem that the words of a command state."""
 
@@ -166,15 +169,18 @@ def _parameter(text: str) -> tuple[str, list[str]]:
 def settings_of(texts: Sequence[str], *words: str) -> dict[str, str]:
     """Names and values from --set options, as in n=6; `words` may stand in place of a number.
 
-    **Fails** with `RatfitError` for another word, and for a name that is set twice.
+    **Fails** with `RatfitError` for a value that holds other names, and for a name that is set twice.
     """
     found: dict[str, str] = {}
     for text in texts:
         name, value = _pair(text, "--set", "n=6")
         if name in found:
             raise RatfitError(f"--set {text}: {name} is set twice; leave one out")
-        if value.isidentifier() and value not in (*RESERVED, *words):
+        if value not in words and (unknown := set(_NAME.findall(value)) - RESERVED):
             other = f" (a parameter's value may also be {' or '.join(words)})" if words else ""
-            raise RatfitError(f"--set {text}: a number is needed, as in {name}=1/3{other}{nearest(value, words)}")
+            example = f"as in {name}=1/3 or {name}=sqrt(2)/2{other}"
+            raise RatfitError(
+                f"--set {text}: a number is needed, {example}; {min(unknown)} is none{nearest(value, words)}"
+            )
         found[name] = value
     return found

@@ -30,7 +30,7 @@ def main(arguments: list[str] | None = None) -> None:
         kept = "; rows that were written are kept, --resume goes on" if sys.argv[1:2] in (["bench"], ["paper"]) else ""
         print(f"\nratfit: interrupted{kept}", file=sys.stderr)
         sys.exit(130)
-    except BrokenPipeError:  # the reader, `head` say, has seen enough
+    except (BrokenPipeError, SystemExit):  # the reader, `head` say, has seen enough; click ends by itself then, with 1
         sys.stderr.close()
         sys.exit(0)
     sys.exit(status if isinstance(status, int) else 0)

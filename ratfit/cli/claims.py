@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import click
 
-from ratfit.cli.options import write
+from ratfit.cli.options import check_places, write
 from ratfit.report.progress import waiting
 
-CLAIMS_HELP = """WORDS are ids (S-28-A), documents (S, DP, PM, SM) or how ids begin (S-4.2); without any, all claims."""
+CLAIMS_HELP = """WORDS are ids (S-28-A), how ids begin (S-4.2), or documents by their letters or names: S (schlick1994),
+DP (microfacet), PM (polimi2024), SM (smoothie); without any, all claims."""
 
 
 @click.command(short_help="Decide what the sources claim.", epilog=CLAIMS_HELP)
@@ -26,7 +27,8 @@ def claims(words: tuple[str, ...], format_: str, measure: bool, out: str | None)
     from ratfit.claims import decide, selected
     from ratfit.report.claims import claims_json, claims_markdown, claims_text
 
-    chosen = selected(words)
+    check_places(out)
+    chosen = selected([document_of(word) or word for word in words])
     decisions = []
     for number, claim in enumerate(chosen, 1):
         with waiting(f"{number}/{len(chosen)}: deciding {claim.id} (Ctrl-C stops)"):
@@ -34,3 +36,12 @@ def claims(words: tuple[str, ...], format_: str, measure: bool, out: str | None)
     written = {"text": claims_text, "json": claims_json, "markdown": claims_markdown}[format_](decisions)
     write(written, out)
     return 0
+
+
+def document_of(word: str) -> str | None:
+    """The letters of the document that has this name, with its year or without; the names end the ledger's titles."""
+    from ratfit.claims import DOCUMENTS
+
+    names = {letters: title.rpartition("(")[2].rstrip(")") for letters, title in DOCUMENTS.items()}
+    wanted = word.casefold()
+    return next((each for each, name in names.items() if wanted in (name, name.rstrip("0123456789"))), None)

@@ -15,9 +15,17 @@ from ratfit._problem import Problem
 from ratfit._problem_file import problem_of
 from ratfit._problem_text import at_parameters, to_tables
 from ratfit._target import exact
-from ratfit.cli.options import EXPRESSION_HELP, WORDS, derived, problem_options, read_problem, write
+from ratfit.cli.options import (
+    EXPRESSION_HELP,
+    WORDS,
+    check_places,
+    derived,
+    problem_options,
+    read_problem,
+    write,
+)
 from ratfit.gallery import Card
-from ratfit.plot.write import picture_format, write_picture
+from ratfit.plot.write import write_picture
 
 
 @click.command(short_help="Derive a fit from its kernel conditions.", context_settings=WORDS, epilog=EXPRESSION_HELP)
@@ -38,9 +46,8 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     ratfit derive eq15 --plot gold.svg --reference gold
     ratfit derive "t**n" --parameter n=1:1000 --on 0 1 --form 1/1 --value 0 --value 1 --derivative 1
     """
-    if options["plot"] is not None:
-        picture_format(options["plot"])
-    elif options["reference"]:
+    check_places(options["out"], options["plot"])
+    if options["reference"] and options["plot"] is None:
         raise RatfitError("--reference says what a picture compares with: give --plot FILE too")
     found, shown = read_problem(problem, degree, options)
     values = settings_of(settings)

@@ -14,13 +14,15 @@ import click
 from ratfit._fit import Fit
 from ratfit._inline import settings_of
 from ratfit._parse import RatfitError
-from ratfit._target import exact
 from ratfit.cli.derive import rendered
 from ratfit.cli.options import (
     EXPRESSION_HELP,
     WORDS,
     Number,
+    check_places,
     derived,
+    finite,
+    numbers,
     problem_options,
     read_problem,
     stated_words,
@@ -37,8 +39,11 @@ SAMPLES = 1_000_000
 BACKEND_HELP = """Time there alone (may be repeated): jax-cpu, jax-gpu, numpy, c-scalar, c-fast, cost-model; or none,
 for the errors alone. Left out: all that this machine has."""
 
+SAMPLES_HELP = """Samples for the errors: 1000000, or say 1e9. gamma is timed at 1000000 whatever it says, of a --model
+too; --backend none leaves gamma out."""
+
 measure_options = together(
-    click.option("--samples", type=Number(), default=None, metavar="N", help="Samples: 1000000, or say 1e9."),
+    click.option("--samples", type=Number(), default=None, metavar="N", help=SAMPLES_HELP),
     click.option(
         "--sampling",
         metavar="NAME",
@@ -117,6 +122,7 @@ def bench(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ...
 def _bench_model(problem: tuple[str, ...], degree: int | None, values: dict[str, str], options: dict[str, Any]) -> int:
     """Measures what stands for a whole model, on pairs of directions."""
     from ratfit._bench import model_jobs
+    from ratfit._setting import RANDOM
     from ratfit.report.rows import Book
 
     measured = [name for name in ("exhaustive", "within", "peers") if options[name]]
@@ -127,7 +133,7 @@ def _bench_model(problem: tuple[str, ...], degree: int | None, values: dict[str,
     old = _old_rows(options["against"])
     _check_measuring(options)
     _begin(options)
-    asked = model_jobs(options["model"], _numbers(values))
+    asked = model_jobs(options["model"], numbers(values, RANDOM))
     book, about = Book(options["out"], options["resume"]), {"fit": None, "command": _command(), "published": None}
     on_pairs = options | {"sampling": options["sampling"] or "hemisphere"}
     return _finish(_planned(asked, about, on_pairs, book), book, old, options)
@@ -135,6 +141,7 @@ def _bench_model(problem: tuple[str, ...], degree: int | None, values: dict[str,
 
 def _check_measuring(options: dict[str, Any]) -> None:
     """What can be refused before any work is done."""
+    check_places(options["out"])
     if options["resume"] and options["out"] is None:
         raise RatfitError("--resume needs the file to go on from: --out FILE")
     if options["exhaustive"] and options["samples"] is not None:
@@ -189,10 +196,11 @@ def _planned(found: list[Job], about: dict[str, Any], options: dict[str, Any], b
 
 def _jobs(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str, Any]) -> list[Job]:
     from ratfit._bench import jobs, peer_jobs
+    from ratfit._setting import RANDOM
 
-    values = _numbers(given)
+    values = numbers(given, RANDOM)
     settings: Sequence[Any] = [values] if values else list(shown.settings) if shown else []
-    ends = tuple(_finite(end) for end in options["within"] or ())
+    ends = tuple(finite(end, "--within") for end in options["within"] or ())
     found = jobs(fit, settings, (ends[0], ends[1]) if ends else None)
     if not options["peers"]:
         return found
@@ -200,20 +208,6 @@ def _jobs(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str
     for name, reason in missing:
         print(f"ratfit: no {name}: {reason}", file=sys.stderr)
     return [*found, *peers]
-
-
-def _numbers(given: dict[str, str]) -> dict[str, Any]:
-    """The values of parameters as numbers, "random" as it is."""
-    from ratfit._setting import RANDOM
-
-    return {n: v if v == RANDOM else float(exact(v, f"--set {n}")) for n, v in given.items()}
-
-
-def _finite(text: str) -> float:
-    value = exact(text, "--within")
-    if not (value.is_number and value.is_finite):
-        raise RatfitError(f"--within {text}: two numbers are needed, as in --within 0 9")
-    return float(value)
 
 
 def _backends(asked: tuple[str, ...]) -> tuple[str, ...]:

@@ -7,10 +7,9 @@ from typing import Any
 import click
 
 from ratfit._inline import settings_of
-from ratfit._parse import RatfitError
-from ratfit._target import exact
-from ratfit.cli.options import Number, write
-from ratfit.plot.write import picture_format, write_picture
+from ratfit._parse import RatfitError, nearest
+from ratfit.cli.options import Number, check_places, numbers, write
+from ratfit.plot.write import write_picture
 from ratfit.report.progress import waiting
 
 
@@ -34,23 +33,26 @@ def check_model(model: str | None, **options: Any) -> int:
     A law is searched over the ranges of the parameters, those of --set kept: one that holds was not seen to fail.
     Exit status: 0 all laws hold, 1 one fails or is left undecided, 2 bad input.
     """
-    from ratfit.models import MODELS, named
+    from ratfit.models import MODELS
     from ratfit.report.model_check import check_json, check_text, models_json, models_text
 
-    if options["plot"]:
-        picture_format(options["plot"])
+    check_places(options["out"], options["plot"])
     if options["seed"] < 0:
         raise RatfitError(f"--seed {options['seed']}: give a whole number from 0 on")
     if model is None:
         _only_listed(options)
         write(models_json(MODELS) if options["format_"] == "json" else models_text(MODELS), options["out"])
         return 0
-    found, fixed = named(model), _numbers(options["fixed"])
+    if model not in MODELS:
+        raise RatfitError(
+            f"no model {model!r}{nearest(model, MODELS)} `ratfit check-model` lists the {len(MODELS)} models"
+        )
+    found, fixed = MODELS[model], numbers(settings_of(options["fixed"]))
     with waiting(f"measuring {model}, for half a minute or so (Ctrl-C stops)"):
         from ratfit.models.check import check
 
         checked = check(found, fixed, seed=options["seed"])
-    if options["plot"]:
+    if options["plot"] is not None:
         from ratfit.plot.albedo import plot_albedo
 
         write_picture(plot_albedo(checked).figure, options["plot"])  # type: ignore[arg-type]  # a Figure of its own
@@ -62,13 +64,3 @@ def _only_listed(options: dict[str, Any]) -> None:
     for name, given in (("--set", options["fixed"]), ("--plot", options["plot"])):
         if given:
             raise RatfitError(f"{name} goes with a model: name one, as in `ratfit check-model schlick`")
-
-
-def _numbers(texts: tuple[str, ...]) -> dict[str, float]:
-    found = {}
-    for name, text in settings_of(texts).items():
-        value = exact(text, f"--set {name}")
-        if not (value.is_number and value.is_real and value.is_finite):
-            raise RatfitError(f"--set {name}={text}: a number is needed, as in {name}=0.3")
-        found[name] = float(value)
-    return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,10 @@ from ratfit._fit import Fit
 from ratfit._inline import Words, problem_of_words
 from ratfit._parse import RatfitError, nearest
 from ratfit._problem import Problem
+from ratfit._target import exact
+from ratfit.cli.place import check_place
 from ratfit.gallery import Card, card, find_problem, is_card, is_known
+from ratfit.plot.write import picture_format
 from ratfit.report.progress import waiting
 
 EXPRESSION_HELP = """PROBLEM is looked up as a gallery name (`ratfit gallery`), then as a problem file
@@ -146,6 +149,30 @@ def derived(problem: Problem, options: dict[str, Any]) -> Fit:
     seconds = positive(options["timeout"])
     with waiting(f"deriving {problem.name}, for at most {seconds:g} s (Ctrl-C stops)"):
         return derive_fit(problem, route=options["route"], timeout=seconds, seed=options["seed"])
+
+
+def numbers(given: Mapping[str, str], *words: str) -> dict[str, Any]:
+    """The values of --set as numbers; `words` that stand in place of one are left as they are.
+
+    **Fails** with `RatfitError` for what is no finite real number.
+    """
+    return {name: text if text in words else finite(text, f"--set {name}") for name, text in given.items()}
+
+
+def finite(text: str, option: str) -> float:
+    """A finite real number from text, as 0.3 or pi/4; `RatfitError`, which names the option, for anything else."""
+    value = exact(text, option)
+    if not (value.is_number and value.is_real and value.is_finite):
+        raise RatfitError(f"{option}: {text} is no finite number; give one, as 0.3 or 1/3")
+    return float(value)
+
+
+def check_places(out: str | None, plot: str | None = None) -> None:
+    """Before any work: whether the result and the picture can be written where they are asked to."""
+    check_place("--out", out)
+    if plot is not None:
+        picture_format(plot)
+        check_place("--plot", plot)
 
 
 def positive(seconds: float) -> float:

@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from ratfit._parse import RatfitError
+from ratfit.cli.place import check_place
 from ratfit.gallery import card, find_problem
 
 
@@ -49,6 +50,7 @@ def init(file: str) -> None:
 
     from ratfit._record import write_text
 
+    check_place("init", file)
     if Path(file).exists():
         raise RatfitError(f"{file} exists and is left alone; give another name")
     write_text(Path(file), (files("ratfit.gallery") / "template.txt").read_text("utf-8"))

@@ -9,9 +9,9 @@ import click
 from ratfit._inline import Words, target_of_words
 from ratfit._parse import RatfitError
 from ratfit._target import Target
-from ratfit.cli.options import WORDS, one_word, positive, write
+from ratfit.cli.options import WORDS, check_places, one_word, positive, write
 from ratfit.gallery import card, find_problem, is_known
-from ratfit.plot.write import picture_format, write_picture
+from ratfit.plot.write import write_picture
 from ratfit.report.progress import waiting
 
 TARGET_HELP = """TARGET is looked up as a gallery name (`ratfit gallery`), then as a problem file (it ends in .toml or
@@ -40,12 +40,11 @@ def study(target: tuple[str, ...], **options: Any) -> int:
     from ratfit._study import study as study_target
     from ratfit.report.study import study_json, study_text, study_toml
 
-    if options["plot"]:
-        picture_format(options["plot"])
+    check_places(options["out"], options["plot"])
     studied, seconds = _read_target(target, options), positive(options["timeout"])
     with waiting(f"studying {studied.expression}, for at most {seconds:g} s (Ctrl-C stops)"):
         found = study_target(studied, timeout=seconds)
-    if options["plot"]:
+    if options["plot"] is not None:
         from ratfit.plot import plot_study
 
         write_picture(plot_study(found).figure, options["plot"])  # type: ignore[arg-type]  # a Figure of its own

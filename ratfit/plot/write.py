@@ -32,8 +32,6 @@ def picture_format(file: str | Path) -> str:
     suffix = Path(file).suffix.lower().removeprefix(".")
     if suffix not in _UNSAID:
         raise RatfitError(f"{file or 'no name'}: name the picture something.svg, something.pdf or something.png")
-    if not Path(file).parent.is_dir():
-        raise RatfitError(f"{file}: there is no folder {Path(file).parent}; make it first")
     return suffix
 
 

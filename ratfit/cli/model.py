@@ -44,9 +44,8 @@ def check_model(model: str | None, **options: Any) -> int:
         write(models_json(MODELS) if options["format_"] == "json" else models_text(MODELS), options["out"])
         return 0
     if model not in MODELS:
-        raise RatfitError(
-            f"no model {model!r}{nearest(model, MODELS)} `ratfit check-model` lists the {len(MODELS)} models"
-        )
+        near = nearest(model, MODELS) or ";"
+        raise RatfitError(f"no model {model!r}{near} `ratfit check-model` lists the {len(MODELS)} models")
     found, fixed = MODELS[model], numbers(settings_of(options["fixed"]))
     with waiting(f"measuring {model}, for half a minute or so (Ctrl-C stops)"):
         from ratfit.models.check import check

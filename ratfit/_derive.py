@@ -16,7 +16,7 @@ from ratfit._fit import Candidate, Fit
 from ratfit._generators import DIGITS
 from ratfit._parse import RatfitError, nearest, shortened
 from ratfit._problem import Problem
-from ratfit._solver import Solution, Undecided, pick
+from ratfit._solver import Solution, Undecided, pick, plain
 from ratfit._system import System, equations, polynomial_equations
 from ratfit._target import sample_values
 from ratfit._verify import verify
@@ -78,6 +78,7 @@ def _out_of_time(problem: Problem, known: _Known, timeout: float | None) -> Fit:
 
 def _derived(problem: Problem, route: str, known: _Known, timeout: float | None, seed: int) -> Fit:
     system = equations(problem)
+    system = replace(system, demands=tuple(map(plain, system.demands)))
     known.route = taken = pick(system, route)
     known.words |= {"route": taken, "conditions": str(len(problem.conditions))}
     known.words["unknowns"] = str(len(system.shape.unknowns))

@@ -4,26 +4,61 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
+from dataclasses import replace
 
 import sympy as sp
 
-from ratfit._condition import Limit
+from ratfit._condition import AbstractPointCondition, Limit
 from ratfit._field import Field, is_zero, ranks_agree
-from ratfit._generators import far_turns
+from ratfit._generators import far_turns, sampled
 from ratfit._rows import limit_rows, rows
+from ratfit._solver.naming import Meaning, named, names_of
 from ratfit._solver.solution import Solution, Undecided
 from ratfit._system import System, columns, completed
+
+NESTED = 2
+"""Roots within each other from which on a number is given a name: the exact field of one root is small."""
+
+NOTHING = 1e-30
+"""A denominator below this vanishes."""
 
 
 def solve_linear(system: System) -> list[Solution]:
     """All fractions of the form that satisfy the linear equations: none, one, or one family.
 
+    Where numbers have roots within roots of parameters the algebra is done in names for them.
     Raises Undecided when the exact rank and the numerical one differ: constants are then related in a way that
     the exact field does not know.
     """
     if any(is_zero(e) is False for e in system.completion.leftover):
         return []
-    return fractions(system, null_space(completed(system)))
+    return _in_names(system) or fractions(system, null_space(completed(system)))
+
+
+def _in_names(system: System) -> list[Solution]:
+    """The same with names for numbers with roots within roots; nothing where there are none, or names would differ.
+
+    The algebra of names alone is that of a field of fractions. It says the same as that of the numbers where the rank
+    does not drop and no denominator vanishes when these are put in.
+    """
+    meaning = names_of(system.demands, NESTED)
+    points = all(isinstance(c, AbstractPointCondition) for c in completed(system).conditions)
+    if not meaning or not points or len(completed(system).conditions) > len(system.conditions):
+        return []
+    plain = replace(system, demands=named(system.demands, meaning))
+    matrix = rows(plain)
+    vectors = kernel(matrix, len(columns(plain.shape)[0]))
+    numbers = [[e.xreplace(meaning) for e in row] for row in matrix]
+    solution = fractions(plain, vectors)
+    if not solution or not ranks_agree(numbers, len(numbers[0]) - len(vectors)):
+        return []
+    return [replace(s, meaning=meaning) for s in solution if _is_finite(s, meaning)]
+
+
+def _is_finite(solution: Solution, meaning: Meaning) -> bool:
+    """Whether no coefficient of a fraction loses its denominator when the names' numbers are put in."""
+    divisors = [sp.fraction(sp.together(part))[1] for part in (solution.numerator, solution.denominator)]
+    return all(min(map(abs, sampled(divisor.xreplace(meaning)))) > NOTHING for divisor in divisors)
 
 
 def null_space(system: System) -> list[list[sp.Expr]]:

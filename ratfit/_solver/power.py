@@ -11,6 +11,7 @@ from ratfit._field import is_zero
 from ratfit._generators import sampled
 from ratfit._jets import same
 from ratfit._parse import RatfitError
+from ratfit._solver.naming import Meaning, named, names_of
 from ratfit._solver.solution import Solution, Undecided
 from ratfit._system import System
 from ratfit._target import INSIDE, Parameter, sample_values
@@ -49,12 +50,15 @@ def solve_power(system: System) -> list[Solution]:
     elsewhere = sorted(((k, d) for k, d in points if not same(k.at, c)), key=lambda p: p[0].order)
     if 0 not in at_zero:
         raise RatfitError(f"the power route needs a value at {x} = {c}, where the base {base} vanishes")
-    amplitude = at_zero.pop(0)
+    # What simplifying makes of roots, the root of a product say, the exact field could not tell from them.
+    meaning = names_of(system.demands)
+    (amplitude,) = named([at_zero.pop(0)], meaning)
+    elsewhere = [(k, *named([d], meaning)) for k, d in elsewhere]
     if not elsewhere:
         raise Undecided(f"nothing fixes the factor of the power; add a value at another place than {x} = {c}")
     found = []
     for exponent in _exponents(at_zero, sp.diff(base, x), n.name):
-        found += _fitted(system, amplitude, exponent, elsewhere)
+        found += _fitted(system, amplitude, exponent, elsewhere, meaning)
     return found
 
 
@@ -77,8 +81,17 @@ def _exponents(demands: dict[int, sp.Expr], slope: sp.Expr, name: str) -> list[E
     return [Exponent(Parameter(name, *range_), range_, None), *whole]
 
 
-def _fitted(system: System, amplitude: sp.Expr, exponent: Exponent, elsewhere: list[Demand]) -> list[Solution]:
-    """B from the first condition elsewhere, and a free exponent from the second."""
+def _fitted(
+    system: System,
+    amplitude: sp.Expr,
+    exponent: Exponent,
+    elsewhere: list[Demand],
+    meaning: Meaning,
+) -> list[Solution]:
+    """B from the first condition elsewhere, and a free exponent from the second.
+
+    `meaning` holds what the names in the amplitude and the demands stand for.
+    """
     assert system.shape.power is not None
     x, (base, _) = system.problem.variable, system.shape.power
     factor, remaining = exponent.factor, list(elsewhere)
@@ -87,29 +100,34 @@ def _fitted(system: System, amplitude: sp.Expr, exponent: Exponent, elsewhere: l
         unit = sp.diff(base**exponent.symbol, x, condition.order).subs(x, condition.at)
         factor = (demand - (amplitude if condition.order == 0 else 0)) / unit
     if exponent.range is None or not remaining:
-        return [_solution(system, amplitude, factor, exponent.symbol, exponent.range)]
+        numbers = amplitude.xreplace(meaning), factor.xreplace(meaning)
+        return [_solution(system, *numbers, exponent.symbol, exponent.range)]
     if len(remaining) > 1:
         raise Undecided("more than two conditions away from the base's zero leave no exponent in closed form")
     roots = _exponent_roots(system, amplitude, factor, remaining[0], exponent)
-    return [_solution(system, amplitude, factor.subs(exponent.symbol, root), root, None) for root in roots]
+    low, high = exponent.range
+    found = []
+    for root in roots:
+        number, whole = root.xreplace(meaning), factor.subs(exponent.symbol, root).xreplace(meaning)
+        if not number.has(sp.I) and all(low < v < high for v in sampled(number)):
+            found.append(_solution(system, amplitude.xreplace(meaning), whole, number, None))
+    return found
 
 
 def _exponent_roots(
     system: System, amplitude: sp.Expr, factor: sp.Expr, second: Demand, exponent: Exponent
 ) -> list[sp.Expr]:
-    """The exponents at which a second condition elsewhere holds too, inside the range."""
-    assert system.shape.power is not None and exponent.range is not None
+    """The exponents at which a second condition elsewhere holds too, whether they lie in the range or not."""
+    assert system.shape.power is not None
     x, (base, _) = system.problem.variable, system.shape.power
     condition, demand = second
     n = sp.Dummy("n", real=True)
     value = sp.diff(amplitude + factor.subs(exponent.symbol, n) * base**n, x, condition.order).subs(x, condition.at)
     equation = sp.powsimp(sp.expand(sp.simplify(value - demand)), force=True)
     try:
-        roots = sp.solve(equation, n)
+        return sp.solve(equation, n)
     except NotImplementedError:
         raise Undecided("the exponent has no closed form") from None
-    low, high = exponent.range
-    return [r for r in roots if not r.has(sp.I) and all(low < v < high for v in sampled(r))]
 
 
 def _solution(

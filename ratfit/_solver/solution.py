@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from ratfit._condition import AbstractCondition
+from ratfit._solver.naming import Meaning
 
 
 class Undecided(Exception):
@@ -19,6 +20,7 @@ class Solution:
 
     `free` holds what stays open, each with its range; `nature` is a reason for rejecting it at once, or "". `numbers`
     says that coefficients are numbers found by iteration, written as rationals of 60 digits, and what stands behind.
+    `meaning` holds names in numerator and denominator that stand for numbers of the conditions.
     """
 
     numerator: sp.Expr
@@ -26,6 +28,7 @@ class Solution:
     free: dict[sp.Symbol, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
     nature: str = ""
     numbers: Numbers | None = None
+    meaning: Meaning = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

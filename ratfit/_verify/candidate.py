@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ratfit._fraction import reduced
-from ratfit._solver import Solution
+from ratfit._solver import Meaning, Solution
 
 
 @dataclass(frozen=True)
@@ -22,6 +22,12 @@ class Reduced:
     @property
     def expression(self) -> sp.Expr:
         return self.factor * self.numerator / self.denominator
+
+    def put_in(self, meaning: Meaning) -> Reduced:
+        """The same with what names in it stand for."""
+        return Reduced(
+            *(part.xreplace(meaning) for part in (self.factor, self.numerator, self.denominator, self.common))
+        )
 
 
 def without_common_factors(factor: sp.Expr, solution: Solution, x: sp.Symbol) -> Reduced:

@@ -15,7 +15,7 @@ from ratfit._inverse import inverse_of
 from ratfit._multiprecise import multiprecise
 from ratfit._parse import RatfitError
 from ratfit._poles import polynomial_roots
-from ratfit._solver import Numbers, Solution, Table
+from ratfit._solver import Meaning, Numbers, Solution, Table, named
 from ratfit._system import System
 from ratfit._target import sample_values
 from ratfit._verify.between import measured_between, nodes_of
@@ -56,13 +56,14 @@ def verify(system: System, solution: Solution) -> Candidate:
         return Candidate(sp.nan, reason="the denominator vanishes identically")
     if solution.numbers is not None:
         return _verified_numbers(system, candidate, solution.numbers)
-    expression = _presented(system, candidate)
+    expression = _presented(system, candidate).xreplace(solution.meaning)
     free = {s: r for s, r in solution.free.items() if _depends(expression, s)}
     idle = {s: sp.S.One for s in solution.free if s in expression.free_symbols and s not in free}
     if idle:
-        return verify(system, Solution(solution.numerator.subs(idle), solution.denominator.subs(idle), free))
-    checked = tuple(_check(system, condition, demand, candidate, expression) for condition, demand in system.pairs)
-    reason = _failure(checked, candidate.common) or ("" if free else broken(system, candidate))
+        parts = solution.numerator.subs(idle), solution.denominator.subs(idle)
+        return verify(system, Solution(*parts, free, meaning=solution.meaning))
+    checked = tuple(_check(system, c, d, candidate, expression, solution.meaning) for c, d in system.pairs)
+    reason = _failure(checked, candidate.common) or ("" if free else broken(system, candidate.put_in(solution.meaning)))
     if roots := expression.atoms(sp.CRootOf):
         words = f"exact: {len(roots)} algebraic number(s) without radicals, shown to {SHOWN} digits"
         return Candidate(expression.xreplace({r: r.evalf(SHOWN) for r in roots}), free, checked, reason, words)
@@ -90,7 +91,7 @@ def _verified_numbers(system: System, candidate: Reduced, numbers: Numbers) -> C
     checked = tuple(
         _check_number(system, condition, demand, candidate)
         if condition in numbers.conditions
-        else _check(system, condition, demand, candidate, candidate.expression)
+        else _check(system, condition, demand, candidate, candidate.expression, {})
         for condition, demand in system.pairs
     )
     expression = shown(candidate, system.problem.variable)
@@ -166,15 +167,20 @@ def _middle(system: System) -> sp.Expr:
 
 
 def _check(
-    system: System, condition: AbstractCondition, demand: sp.Expr, candidate: Reduced, expression: sp.Expr
+    system: System,
+    condition: AbstractCondition,
+    demand: sp.Expr,
+    candidate: Reduced,
+    expression: sp.Expr,
+    meaning: Meaning,
 ) -> Checked:
-    """One condition, exactly and at 50 digits."""
+    """One condition, exactly in the candidate's names and at 50 digits in the expression, where they are put in."""
     try:
         residual = numerical_residual(system, condition, demand, expression)
         size = 1 + _size(demand)
         if residual > CLEAR * size:
             return Checked(condition, demand, False, float(residual))  # no algebra makes that zero
-        exact = _all_equal(found_exactly(system, condition, candidate), demand)
+        exact = _all_equal(found_exactly(system, condition, candidate), *named([demand], meaning))
     except Related:
         return Checked(condition, demand, None, None)
     except RatfitError:

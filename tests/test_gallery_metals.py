@@ -1,0 +1,96 @@
+"""A metal's Fresnel factor with both parts of its index symbolic, by what it does at both ends."""
+
+from dataclasses import replace
+from functools import cache
+
+import mpmath
+import pytest
+import sympy as sp
+
+import ratfit as rf
+from ratfit._solver import plain
+from ratfit._solver.naming import named, names_of
+from ratfit._solver.squares import without_squares
+from ratfit.gallery import card
+
+METALS = [("29/100", "2863/1000"), ("147/50", "299/100"), ("7/10", "8")]
+
+
+def fresnel_factor(u, index):
+    """Snell's law and the two amplitudes of light, s and p, with a complex index."""
+    inside = mpmath.sqrt(index**2 - 1 + u * u)
+    s, p = (u - inside) / (u + inside), (index**2 * u - inside) / (index**2 * u + inside)
+    return (abs(s) ** 2 + abs(p) ** 2) / 2
+
+
+@cache
+def derived(orders_at_0, orders_at_1, form):
+    """The fit that keeps so many orders of the Taylor series at either end."""
+    problem = card("conductor").problem
+    places = [(0, k) for k in range(orders_at_0)] + [(1, k) for k in range(orders_at_1)]
+    conditions = tuple(rf.Derivative(at, order) if order else rf.Value(at) for at, order in places)
+    return rf.derive(replace(problem, conditions=conditions, form=form, choice={}), timeout=200)
+
+
+CASES = [
+    (2, 1, card("conductor").problem.form),
+    (2, 2, rf.Rational(2, 1)),
+    pytest.param(3, 2, rf.Rational(2, 2), marks=pytest.mark.thorough),
+    pytest.param(3, 3, rf.Rational(3, 2), marks=pytest.mark.thorough),
+]
+
+
+@pytest.mark.parametrize("orders_at_0, orders_at_1, form", CASES)
+def test_a_metal_is_derived_with_its_index_symbolic(orders_at_0, orders_at_1, form):
+    fit = derived(orders_at_0, orders_at_1, form)
+    assert fit.status == "unique" and not fit.rejected and all(c.holds for c in fit.conditions)
+    for values in METALS:
+        given = dict(zip(sorted(fit.problem.parameters, key=str), map(sp.Rational, values), strict=True))
+        function = sp.lambdify(fit.problem.variable, fit.expression.xreplace(given), "mpmath")
+        with mpmath.workdps(60):
+            index = mpmath.mpc(*(mpmath.mpf(value.p) / value.q for value in given.values()))
+            for at, orders in ((0, orders_at_0), (1, orders_at_1)):
+                side = 1 if at == 0 else -1
+                for order in range(orders):
+                    ours = mpmath.diff(lambda d, at=at: function(at + d), 0, order, direction=side)
+                    exact = mpmath.diff(lambda d, at=at: fresnel_factor(at + d, index), 0, order, direction=side)
+                    assert abs(ours - exact) < 1e-9 * (1 + abs(exact)), (values, at, order)
+
+
+a, b = (rf.parameter(name, "1/2", 2) for name in "ab")
+c = rf.parameter("c", -1, 1)
+
+
+@pytest.mark.parametrize(
+    "given, expected",
+    [
+        (sp.sqrt(4 * a**2 * b**2 + (a**2 - b**2) ** 2), a**2 + b**2),
+        (sp.sqrt(a**2 - b**2 + sp.sqrt(a**4 + 2 * a**2 * b**2 + b**4)), sp.sqrt(2) * a),
+        (1 / sp.sqrt((a**3 + 2 * a**2 * b + a * b**2)), 1 / (sp.sqrt(a) * (a + b))),
+        (sp.sqrt(sp.expand((a + c + 1) ** 2)), sp.sqrt(sp.expand((a + c + 1) ** 2))),  # 3/2 - 1 ... 4: no sign known
+        (sp.sqrt(sp.expand((c**2 + 1) ** 2 * c)), (c**2 + 1) * sp.sqrt(c)),
+        (sp.sqrt(1 + a**2), sp.sqrt(1 + a**2)),
+        (sp.sqrt(2 + sp.sqrt(2)), sp.sqrt(2 + sp.sqrt(2))),
+        (sp.exp(sp.sqrt(sp.expand((a + 1) ** 2))), sp.exp(a + 1)),
+    ],
+)
+def test_squares_are_taken_out_of_square_roots(given, expected):
+    found = without_squares(given)
+    assert sp.simplify(found - expected) == 0 and len(str(found)) <= len(str(given))
+    assert len(str(found)) <= len(str(expected)) + 4
+    for values in ({a: sp.Rational(2, 3), b: sp.Rational(7, 5), c: sp.Rational(1, 3)},):
+        assert abs(sp.N((found - given).xreplace(values), 30)) < 1e-25
+
+
+def test_a_number_without_squares_stays_as_it_is():
+    number = sp.pi / (2 * a) + sp.sqrt(a + 1)
+    assert plain(number) is number
+
+
+def test_names_stand_for_numbers_of_parameters_once_a_number_is_deep():
+    deep, flat, bare = sp.sqrt(1 + sp.sqrt(a)), a / (1 + b), sp.sqrt(2)
+    meaning = names_of([deep, flat, bare, a, deep], depth=2)
+    assert set(meaning.values()) == {deep, flat}
+    shown = named([deep, flat, bare, a], meaning)
+    assert shown[2:] == (bare, a) and [meaning[name] for name in shown[:2]] == [deep, flat]
+    assert names_of([flat, bare, sp.sqrt(a)], depth=2) == {}

@@ -14,9 +14,11 @@ of a small difference, within 4 at 97 places of 100 and within 14 at all. Both h
 
 from __future__ import annotations
 
-from sympy import Expr, Integer, Max, Min, Or, Piecewise, Rational, S, exp, sqrt
+from sympy import Expr, Integer, Max, Min, Piecewise, Rational, S, exp, sqrt
 
+from ratfit.brdf._arguments import FROM_ZERO, UNIT, takes
 from ratfit.brdf._limits import guarded
+from ratfit.brdf._refraction import excess, oblique, root, slopes, through
 
 SCHLICK_N = Integer(5)
 """The published exponent of `schlick`."""
@@ -27,36 +29,41 @@ SMOOTHIE_A, SMOOTHIE_B = Rational("-1.71983"), Rational("-5.43926")
 KARIS_A, KARIS_B = Rational("-5.55473"), Rational("-6.98316")
 """The published constants of `karis`: of u**2 and of u."""
 
+TOTAL = Rational(1, 2**110)
+"""What the square of a cosine counts as 0 below: the root, 3e-17, is less than any digit that F then has."""
 
+
+@takes(eta=FROM_ZERO, kappa=FROM_ZERO)
 def conductor(u: Expr, eta: Expr, kappa: Expr) -> Expr:
-    """The Fresnel factor of a metal, or of anything with a complex index eta + i kappa (schlick1994, Eq. 13).
+    """The Fresnel factor of a metal, or of anything with a complex index n = eta + i kappa (schlick1994, Eq. 13).
 
     At u = 0 it is 1. kappa = 0 is the dielectric, total reflection included. Where there is no surface, eta = 1 and
     kappa = 0, it is 0, and 1 at u = 0, where it has no limit. It is not smooth at the critical angle, kappa = 0 and
     u**2 = 1 - eta**2, and loses half of its digits there.
 
-    With w = a + i b the square root of (eta + i kappa)**2 - s**2, s**2 = 1 - u**2, the polarisations reflect the parts
-    R = |w - u|**2/|w + u|**2 and R |w u - s**2|**2/|w u + s**2|**2. The source writes the latter with 1/u, which is
-    oo/oo at u = 0 (`conductor_as_printed`), and a**2 as a sum that cancels for every metal, while a b = eta kappa.
+    F is R/(R + T) with R = |n - 1|**2 (1 + (s**2/(u |w|))**2), s**2 = 1 - u**2, w = a + i b the square root of
+    n**2 - s**2: what is reflected and what goes through are in the ratio R:T, both without a difference that cancels.
+    The source writes the polarisations apart, with 1/u, which is oo/oo at u = 0 (`conductor_as_printed`).
     """
-    p = (eta - 1) * (eta + 1) + u**2 - kappa**2  # the real part of w**2, in an order that is exact for an index near 1
-    q2 = p**2 + 4 * eta**2 * kappa**2
-    q = sqrt(q2)  # |w|**2
-    # Each branch is finite, with finite slopes, where the other is taken, though there q + p or q - p may be 0.
-    a = Piecewise((sqrt((q + Max(p, -q / 2)) / 2), p >= 0), (eta * kappa * sqrt(2 / (q - Min(p, q / 2))), True))
-    size, s2 = u**2 + q, (1 - u) * (1 + u)
-    product = ((eta - 1) ** 2 + kappa**2) * ((eta + 1) ** 2 + kappa**2)  # |w - u|**2 |w + u|**2
-    # Where |w| is near u, as for glass, |w - u|**2 cancels, and the product does not.
-    first = Piecewise(
-        (1, u**4 + q2 <= 0),
-        ((size - 2 * a * u) / (size + 2 * a * u), Or(6 * u**2 <= q, p <= 0)),
-        (product / (size + 2 * a * u) ** 2, True),
-    )
-    other = u**2 * q + s2**2
-    ratio = Piecewise((1, other <= 0), ((other - 2 * a * u * s2) / (other + 2 * a * u * s2), True))
-    return first * (1 + ratio) / 2
+    p = excess(eta) + u**2 - kappa**2  # the real part of w**2, in an order that is exact for an index near 1
+    product = eta * kappa  # half of its imaginary part
+
+    def refracted(q2: Expr) -> Expr:
+        q = sqrt(q2)  # |w|**2
+        a, b = root(p, q, product)
+        unit, spread = slopes(u, q)
+        passed = Piecewise(
+            (4 * eta * unit + spread * oblique(u, eta, kappa, a, b), p + 2 * product >= 0),
+            (through(u, eta, kappa, a, q), True),
+        )
+        reflected = ((eta - 1) ** 2 + kappa**2) * (unit + spread)
+        return reflected / (reflected + passed)
+
+    q2 = p**2 + 4 * product**2
+    return guarded(refracted, q2, S.One, q2 <= 0, S.One)
 
 
+@takes(eta=FROM_ZERO, kappa=FROM_ZERO)
 def conductor_as_printed(u: Expr, eta: Expr, kappa: Expr) -> Expr:
     """`conductor` as it is printed (schlick1994, Eq. 13), for u > 0: smooth, for calculus; at u = 0 it is oo/oo."""
     p = eta**2 - kappa**2 + u**2 - 1
@@ -66,30 +73,36 @@ def conductor_as_printed(u: Expr, eta: Expr, kappa: Expr) -> Expr:
     return first * (((a + u - 1 / u) ** 2 + b2) / ((a - u + 1 / u) ** 2 + b2) + 1) / 2
 
 
+@takes(eta=FROM_ZERO)
 def dielectric(u: Expr, eta: Expr) -> Expr:
     """The Fresnel factor of a transparent material: eta = eta_t/eta_i, above 1 or below (microfacet, F term).
 
     Below 1 the light is reflected totally, F = 1, where u**2 <= 1 - eta**2: the source leaves that out, and its formula
     is `dielectric_as_printed`. At u = 0 it is 1, exactly; where there is no surface, eta = 1, it is 0 elsewhere. At
     the critical angle its slope is infinite and half of its digits are lost.
+
+    With g**2 = eta**2 - 1 + u**2 it is R/(R + T), R = (eta - 1)**2 (1 + (s**2/(u g))**2) as in `conductor` and
+    T = 4 eta + 2 (eta - 1)**2 (1 + eta**2) s**4/(u g (g + eta u)**2): nothing cancels in either.
     """
-    excess = (eta - 1) * (eta + 1)
 
     def refracted(g2: Expr) -> Expr:
-        g, s2 = sqrt(g2), (1 - u) * (1 + u)
-        # Two forms of (g - u)/(g + u): where g is near u, as eta near 1 makes it, g - u cancels.
-        amplitude = Piecewise(((g - u) / (g + u), 6 * u**2 <= excess), (excess / (g2 + u * (u + 2 * g)), True))
-        return amplitude**2 * (1 + ((g * u - s2) / (g * u + s2)) ** 2) / 2
+        g, size, (unit, spread) = sqrt(g2), (eta - 1) ** 2, slopes(u, g2)
+        rest = 2 * (1 + eta**2) * u * g * spread / (g + eta * u) ** 2
+        reflected = size * (unit + spread)
+        return reflected / (reflected + (4 * eta * unit + size * rest))
 
-    return guarded(refracted, excess + u**2, S.One, excess + u**2 <= 0, S.One)
+    g2 = excess(eta) + u**2
+    return guarded(refracted, g2, S.One, g2 <= TOTAL, S.One)
 
 
+@takes(eta=FROM_ZERO)
 def dielectric_as_printed(u: Expr, eta: Expr) -> Expr:
     """`dielectric` as it is printed (microfacet, F term): not real under total reflection; smooth, for calculus."""
     g = sqrt(eta**2 - 1 + u**2)
     return (g - u) ** 2 / (g + u) ** 2 * (1 + (u * (g + u) - 1) ** 2 / (u * (g - u) + 1) ** 2) / 2
 
 
+@takes(average_normal=UNIT, f=UNIT)
 def spectral(average: Expr, average_normal: Expr, f: Expr) -> Expr:
     """F at a wavelength where f alone is known, from F at an average index (cook1981; schlick1994, Eq. 14).
 
@@ -100,16 +113,18 @@ def spectral(average: Expr, average_normal: Expr, f: Expr) -> Expr:
     """
 
     def scaled(normal: Expr) -> Expr:
-        return f + (1 - f) * Max(0, average - normal) / (1 - normal)
+        return f + (1 - f) * _from_zero(average - normal) / (1 - normal)
 
     return guarded(scaled, average_normal, f, average_normal >= 1, S.Zero)
 
 
+@takes(average_normal=UNIT, f=UNIT)
 def spectral_as_printed(average: Expr, average_normal: Expr, f: Expr) -> Expr:
     """`spectral` as it is printed (schlick1994, Eq. 14): without the clamp, and 0/0 at average_normal = 1."""
     return f + (1 - f) * (average - average_normal) / (1 - average_normal)
 
 
+@takes(f=UNIT, n=FROM_ZERO)
 def schlick(u: Expr, f: Expr, n: Expr = SCHLICK_N) -> Expr:
     """The power approximation of F, for u <= 1 (schlick1994, Eq. 15; microfacet, F term).
 
@@ -118,31 +133,37 @@ def schlick(u: Expr, f: Expr, n: Expr = SCHLICK_N) -> Expr:
     return f + (1 - f) * (1 - u) ** n
 
 
+@takes(f=UNIT, n=FROM_ZERO)
 def schlick_clamped(u: Expr, f: Expr, n: Expr = SCHLICK_N) -> Expr:
     """`schlick` with u held in [0, 1] (polimi2024, Fresnel term): rounding can make a cosine 1 + 2e-16."""
     return schlick(Max(0, Min(1, u)), f, n)
 
 
+@takes(f=UNIT)
 def schlick_as_printed(u: Expr, f: Expr) -> Expr:
     """`schlick` as it is printed in smoothie, Fresnel term: 1 in place of f, so F >= 1, and 2 - f at u = 0."""
     return 1 + (1 - f) * (1 - u) ** 5
 
 
+@takes(eta=FROM_ZERO, kappa=FROM_ZERO)
 def lazanyi(u: Expr, eta: Expr, kappa: Expr) -> Expr:
     """`schlick` with f of a complex index, over one denominator (lazanyi2005, without its correction term)."""
     return ((eta - 1) ** 2 + kappa**2 + 4 * eta * (1 - u) ** 5) / ((eta + 1) ** 2 + kappa**2)
 
 
+@takes(f=UNIT)
 def spherical_gaussian(u: Expr, f: Expr) -> Expr:
     """`schlick` with exp(-6 u) in place of (1 - u)**5 (smoothie, Fresnel term): f + 0.0025 (1 - f) at u = 1."""
     return f + (1 - f) * exp(-6 * u)
 
 
+@takes(f=UNIT)
 def karis(u: Expr, f: Expr) -> Expr:
     """`schlick` with 2**((-5.55473 u - 6.98316) u) in place of (1 - u)**5 (karis2013)."""
     return f + (1 - f) * 2 ** ((KARIS_A * u + KARIS_B) * u)
 
 
+@takes(f=UNIT)
 def smoothie(u: Expr, f: Expr, a: Expr = SMOOTHIE_A, b: Expr = SMOOTHIE_B) -> Expr:
     """From f to 1 by 2**(a + b L.h), with the half vector not normalised, h = L + V (smoothie, Fresnel term).
 
@@ -151,11 +172,18 @@ def smoothie(u: Expr, f: Expr, a: Expr = SMOOTHIE_A, b: Expr = SMOOTHIE_B) -> Ex
     return f + (1 - f) * 2 ** (a + 2 * b * u**2)
 
 
+@takes(eta=FROM_ZERO, kappa=FROM_ZERO)
 def normal(eta: Expr, kappa: Expr = S.Zero) -> Expr:
     """F(1), the reflectance at normal incidence; 1/eta has the same as eta where kappa = 0."""
     return ((eta - 1) ** 2 + kappa**2) / ((eta + 1) ** 2 + kappa**2)
 
 
+@takes(f=UNIT)
 def index(f: Expr) -> Expr:
     """The index eta >= 1 of the dielectric with the normal reflectance f (cook1981): f in [0, 1), infinite at 1."""
     return (1 + sqrt(f)) / (1 - sqrt(f))
+
+
+def _from_zero(rise: Expr) -> Expr:
+    """The greater of 0 and an expression, which sympy is not asked to compare: that takes it a second."""
+    return Max(0, rise, evaluate=not rise.free_symbols)

@@ -1,0 +1,65 @@
+"""What a formula of this room takes: symbols, expressions and numbers, and of numbers those that mean something.
+
+The formulas are sympy's, so that arrays, text and nothing at all would end in an error of sympy's or, worse, in an
+expression that looks right. They are refused where they come in.
+"""
+
+import functools
+import inspect
+import math
+from collections.abc import Callable
+from numbers import Real
+from typing import ParamSpec
+
+from sympy import Expr, S, oo
+
+from ratfit._parse import RatfitError
+
+Formula = ParamSpec("Formula")
+Range = tuple[Expr, Expr]
+
+FROM_ZERO: Range = (S.Zero, oo)
+"""What is never below 0: roughness, an index, an exponent."""
+
+UNIT: Range = (S.Zero, S.One)
+"""What is a part of a whole: a reflectance, a number that is drawn."""
+
+
+def takes(**ranges: Range) -> Callable[[Callable[Formula, Expr]], Callable[Formula, Expr]]:
+    """A formula that refuses arguments which are no real numbers or expressions, and numbers that are impossible.
+
+    **Arguments:** the closed range of each argument that has one, by its name; a cosine has none, for rounding takes
+    it out of [-1, 1]. An expression with symbols in it is in every range.
+
+    **Returns** a decorator; the name, the signature and the docstring of the formula stay. **Fails** with `RatfitError`
+    when the formula is called.
+    """
+
+    def decorated(formula: Callable[Formula, Expr]) -> Callable[Formula, Expr]:
+        signature = inspect.signature(formula)
+
+        @functools.wraps(formula)
+        def checked(*args: Formula.args, **kwargs: Formula.kwargs) -> Expr:
+            for name, value in signature.bind(*args, **kwargs).arguments.items():
+                _check(f"{formula.__name__}: {name}", value, ranges.get(name))
+            return formula(*args, **kwargs)
+
+        return checked
+
+    return decorated
+
+
+def _check(what: str, value: object, within: Range | None) -> None:
+    if isinstance(value, bool) or not isinstance(value, Expr | Real):
+        raise RatfitError(
+            f"{what} is a {type(value).__name__}: give a symbol, a sympy expression or a number; for arrays, lower the "
+            "formula with ratfit.lower and give the arrays to that"
+        )
+    if isinstance(value, Expr) and value.free_symbols:
+        return
+    if value is S.NaN or (isinstance(value, Expr) and value.is_extended_real is False) or value != value:
+        raise RatfitError(f"{what} is {value}: give a real number")
+    if within is not None and ((value < within[0]) == True or (value > within[1]) == True):  # noqa: E712
+        low, high = within
+        asked = f"{low} or more" if math.isinf(high) else f"a number from {low} to {high}"
+        raise RatfitError(f"{what} is {value}: give {asked}")

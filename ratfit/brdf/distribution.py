@@ -7,7 +7,7 @@ hemisphere is 1. The D of schlick1994 is pi times that (its Eq. 5); its factors 
 
 A roughness below `SMOOTH` counts as 0, a Dirac: infinite in its direction, 0 in all others; nothing is nan. A Gaussian
 whose exponent is beyond `UNDERFLOW` is 0. On arrays in float64 the values are right to 4 units of 2^-52, those with two
-roughnesses to 8, and to 3 more for every unit of a Gaussian's exponent, tan^2/alpha^2, or of `blinn`'s logarithm.
+roughnesses to 5, and to 3 more for every unit of a Gaussian's exponent, tan^2/alpha^2, or of `blinn`'s logarithm.
 Gradients are finite where there is no Dirac (in float32 for roughness from 1e-6 on). What roughness means in each:
 `ratfit.brdf.roughness`. For calculus take the `interior` of a formula.
 
@@ -234,10 +234,14 @@ def _complement(t: Expr) -> Expr:
 
 
 def _sine_squared(t: Expr, known: Expr | None) -> Expr:
-    """1 - t^2; where t is near 1 the square would lose what is left, where it is not the product has more to round."""
-    if known is not None:
-        return known
-    return Piecewise((1 - t**2, t < S.Half), (S.Zero, t > 1), ((1 - t) * (1 + t), True))
+    """1 - t^2, or what is known of it."""
+    return _one_less_square(t) if known is None else known
+
+
+def _one_less_square(x: Expr) -> Expr:
+    """1 - x^2. Near 1 the square of x would lose what is left; in 1 - x, which is exact there, it is hardly a rounding."""
+    away = _complement(x)
+    return Piecewise((1 - x**2, x < S.Half), (2 * away - away**2, True))
 
 
 def _rough(alpha: Expr) -> Expr:
@@ -254,7 +258,7 @@ def _dirac(t: Expr) -> Expr:
 
 def _ellipse(w: Expr, p: Expr) -> Expr:
     isotropy = _rough(p)
-    return isotropy * (1 - w) * (1 + w) + w**2 / isotropy
+    return isotropy * _one_less_square(w) + w**2 / isotropy
 
 
 def _across(w: Expr) -> Expr:
@@ -270,7 +274,7 @@ def _line(t: Expr, w: Expr, along: Expr, across: Expr) -> Expr:
 
 def _spread(w: Expr, along: Expr, across: Expr) -> Expr:
     """What tan^2 is multiplied by in the exponent of an elliptical Gaussian."""
-    return w**2 / along**2 + (1 - w) * (1 + w) / across**2
+    return w**2 / along**2 + _one_less_square(w) / across**2
 
 
 def _beyond(t: Expr, s2: Expr, spread: Expr | int, scale: Expr) -> Relational:

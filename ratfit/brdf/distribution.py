@@ -239,7 +239,7 @@ def _sine_squared(t: Expr, known: Expr | None) -> Expr:
 
 
 def _one_less_square(x: Expr) -> Expr:
-    """1 - x^2. Near 1 the square of x would lose what is left; in 1 - x, which is exact there, it is hardly a rounding."""
+    """1 - x^2; near 1 by 1 - x, which is exact there, as the square of x would lose what is left."""
     away = _complement(x)
     return Piecewise((1 - x**2, x < S.Half), (2 * away - away**2, True))
 

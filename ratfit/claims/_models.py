@@ -26,7 +26,7 @@ def named(name: str) -> Model:
 
 
 def cosines(view: Any, light: Any) -> tuple[Any, ...]:
-    """The letters' values for pairs of directions, as `ratfit.models.directions.cosines`."""
+    """The letters' values for pairs of directions, the first of those of `ratfit.models.directions.cosines`."""
     from ratfit.models.directions import cosines as letters
 
-    return letters(view, light)
+    return tuple(letters(view, light)[: len(LETTERS)])

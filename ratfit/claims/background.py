@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
+
 import sympy as sp
 
 from ratfit.brdf import distribution, masking
-from ratfit.claims._agreement import ZERO, AtLeast, AtMost
+from ratfit.claims._agreement import ZERO, AtMost
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo, over_pairs
 from ratfit.claims._models import V_PRIME, T, V, W, named
 
-ALPHA = sp.Symbol("alpha", positive=True)
+ALPHA, PHI = sp.Symbol("alpha", positive=True), sp.Symbol("varphi", positive=True)
 VIEWS = (0.05, 0.2, 0.5, 1.0)
 
 
@@ -30,17 +32,50 @@ def asymmetry(reflectance: sp.Expr, **parameters: float) -> float:
     return float(abs(there - back).max() / abs(there).max())
 
 
-def of_power(weight: sp.Expr, factor: sp.Expr, power: int) -> sp.Expr:
-    """The integral of t**power with a weight over t in [0, 1], times a factor."""
-    return factor * sp.integrate(T**power * weight, (T, 0, 1))
+POWERS = (0, 1, 2, 3)
+"""Distributions without azimuth to try integrals on: t**power."""
+
+
+def of_eq_5(power: int) -> sp.Expr:
+    """The left side of Eq. 5, over both angles, for D = cos(alpha)**power."""
+    around = sp.integrate(sp.cos(ALPHA) ** (power + 1) * sp.sin(ALPHA), (PHI, 0, 2 * sp.pi))
+    return sp.integrate(around, (ALPHA, 0, sp.pi / 2))
+
+
+def of_eq_6(power: int) -> sp.Expr:
+    return sp.integrate(2 * sp.cos(ALPHA) ** (power + 1) * sp.sin(ALPHA), (ALPHA, 0, sp.pi / 2))
+
+
+def of_eq_7(power: int) -> sp.Expr:
+    return sp.integrate(2 * T * T**power, (T, 0, 1))
+
+
+SHARES = sp.symbols("d s C_lambda D_lambda F G D", positive=True)
+d, s, C_LAMBDA, D_LAMBDA, F, G, D = SHARES
+EQ_4 = d / sp.pi * C_LAMBDA + s / (4 * sp.pi * V * V_PRIME) * F * G * D
+EQ_5 = sp.Integral(D * sp.cos(ALPHA) * sp.sin(ALPHA), (ALPHA, 0, sp.pi / 2), (PHI, 0, 2 * sp.pi)) - sp.pi
+EQ_8 = d / sp.pi * D_LAMBDA + s / (4 * sp.pi * V * V_PRIME) * F * G * D
+"""As printed; Eq. 5 with its right side subtracted."""
+
+
+def rewritten(equation: sp.Expr) -> bool:
+    """Whether Eq. 8 is an equation in other letters: one colour put for another."""
+    return bool(sp.simplify(EQ_8.subs(D_LAMBDA, C_LAMBDA) - equation) == 0)
+
+
+def origin_of_eq_8() -> str:
+    return ", ".join(number for number, equation in (("4", EQ_4), ("5", EQ_5)) if rewritten(equation))
 
 
 def diffuse_of_eq_8() -> str:
     """What has to stand as the colour in the diffuse term of Eq. 8 for it to be Eq. 4."""
-    d, s, c, unknown = sp.symbols("d s C_lambda X")
-    specular = sp.Symbol("specular")
-    (colour,) = sp.solve(d / sp.pi * unknown + s * specular - (d / sp.pi * c + s * specular), unknown)
+    (colour,) = sp.solve(EQ_8 - EQ_4, D_LAMBDA)
     return str(colour)
+
+
+def anisotropies() -> tuple[float, ...]:
+    """Those of Ward's D as n/m grows from 1 to 5."""
+    return tuple(anisotropy(0.2, 0.2 * ratio) for ratio in (1, 1.5, 2, 3, 5))
 
 
 def attenuation(heights: float) -> float:
@@ -77,17 +112,17 @@ CLAIMS = (
         "S-6",
         "Eqs. 5, 6",
         "for a D without azimuth Eq. 5 is pi times the integral of Eq. 6",
-        sp.pi,
-        lambda: of_power(T, 2 * sp.pi, 3) / of_power(2 * T, sp.S.One, 3),
-        how="symbolic, for D = t^3",
+        (sp.pi,) * len(POWERS),
+        lambda: tuple(of_eq_5(power) / of_eq_6(power) for power in POWERS),
+        how="their ratio, for D = 1, t, t^2 and t^3",
     ),
     Claim(
         "S-7",
         "Eqs. 6, 7",
         "in the cosine t Eq. 6 is the integral of 2 t D(t)",
-        lambda: of_power(2 * T, sp.S.One, 3),
-        lambda: sp.integrate(sp.cos(ALPHA) ** 3 * 2 * sp.cos(ALPHA) * sp.sin(ALPHA), (ALPHA, 0, sp.pi / 2)),
-        how="symbolic, for D = t^3",
+        lambda: tuple(of_eq_7(power) for power in POWERS),
+        lambda: tuple(of_eq_6(power) for power in POWERS),
+        how="both integrals for D = 1, t, t^2 and t^3",
     ),
     Claim(
         "S-8-colour",
@@ -96,9 +131,17 @@ CLAIMS = (
         "D_lambda",
         diffuse_of_eq_8,
         instead=Reading(
-            "C_lambda, as in Eq. 4: a misprint, as is Equation 5 for Equation 4 in the line before it",
+            "C_lambda, as in Eq. 4: a misprint",
             lambda: diffuse_of_eq_8() == "C_lambda",
         ),
+    ),
+    Claim(
+        "S-8-origin",
+        "Eq. 8",
+        "Eq. 8 is what Eq. 5 becomes in cosines",
+        "5",
+        origin_of_eq_8,
+        instead=Reading("it is Eq. 4; Eq. 5 became Eq. 7: a misprint", lambda: rewritten(EQ_4) and not rewritten(EQ_5)),
     ),
     Claim(
         "S-9-coherent",
@@ -130,9 +173,9 @@ CLAIMS = (
         "S-10-elliptical",
         "Section 2.3",
         "the more m and n differ, the more anisotropic is Ward's D",
-        AtLeast(1.0),
-        lambda: anisotropy(0.2, 0.6) / anisotropy(0.2, 0.3),
-        how="ratio of D along and across the scratches at 20 degrees, n/m = 3 over n/m = 3/2",
+        True,
+        lambda: all(later > earlier for earlier, later in itertools.pairwise(anisotropies())),
+        how="ratio of D along and across the scratches at 20 degrees, n/m = 1, 3/2, 2, 3 and 5",
     ),
 )
 

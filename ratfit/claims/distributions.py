@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Iterable
 
 import sympy as sp
@@ -12,7 +13,7 @@ from ratfit.brdf import distribution
 from ratfit.claims._agreement import AtMost, same, unguarded
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._models import T, W
-from ratfit.claims._numbers import integral, midpoints, values
+from ratfit.claims._numbers import integral, midpoints
 from ratfit.claims.masking import SLOPES
 from ratfit.claims.method import derived
 from ratfit.gallery import card
@@ -67,9 +68,21 @@ def is_single_fraction(formula: sp.Expr) -> bool:
     return bool(sp.simplify(sp.diff(T * formula * u**2 / sp.diff(u, T), T)) == 0)
 
 
+def steeper(m: float) -> float:
+    """The share of Beckmann's facets, by projected area, that are steeper than ten degrees."""
+    return total(T * distribution.beckmann(T, M), {M: m}, 0.0, float(sp.cos(sp.pi / 18)))
+
+
 @functools.cache
 def eq_20() -> sp.Expr:
     return sp.pi * distribution.beckmann(T, M)
+
+
+def printed_21(t: sp.Expr) -> sp.Expr:
+    """Eq. 21 as printed, on its support."""
+    eq21 = card("eq21")
+    assert eq21.published is not None
+    return eq21.published.subs(eq21.problem.variable, t)
 
 
 @functools.cache
@@ -108,11 +121,12 @@ CLAIMS = (
             for name, density, symbol in (
                 ("Beckmann", distribution.beckmann(T, ALPHA), ALPHA),
                 ("Phong", of_peak_one(distribution.phong(T, N)), N),
+                ("Torrance-Sparrow", sp.exp(-((sp.acos(T) / ALPHA) ** 2)) / sp.pi, ALPHA),
                 ("Trowbridge-Reitz", of_peak_one(distribution.ggx(T, ALPHA)), ALPHA),
             )
             if is_normalised(T * density, symbol, (0.25, 0.5))
         ),
-        how="Blinn's power and his Trowbridge-Reitz have peak 1 in their source",
+        how="Blinn's power, his Trowbridge-Reitz and Torrance and Sparrow's Gaussian of the angle have peak 1 there",
     ),
     Claim(
         "S-20-normalised",
@@ -126,9 +140,9 @@ CLAIMS = (
         "S-20-slope",
         "Eq. 20",
         "m is the RMS slope of the facets",
-        1,
-        lambda: mean_slope(2, 0.5) ** 0.5,
-        how="RMS of the slope in two dimensions over m, by projected area",
+        (1, 1, 1),
+        lambda: tuple(mean_slope(2, m) ** 0.5 for m in (0.1, 0.25, 0.5)),
+        how="RMS of the slope in two dimensions over m, by projected area, at three m",
     ),
     Claim(
         "S-20-smooth",
@@ -137,6 +151,22 @@ CLAIMS = (
         0,
         lambda: total(T * eq_20() / sp.pi, {M: 0.002}, 0.0, float(sp.cos(sp.pi / 180))),
         how="the share of facets steeper than one degree at m = 0.002",
+    ),
+    Claim(
+        "S-20-rough",
+        "Section 4.4",
+        "the greater m, the more dispersed are the facets",
+        True,
+        lambda: all(later > earlier for earlier, later in itertools.pairwise(map(steeper, SLOPES))),
+        how="the share of facets steeper than ten degrees grows with the m of Figure 7",
+    ),
+    Claim(
+        "S-20-constants",
+        "Section 4.4",
+        "Beckmann's D depends on m alone, without an arbitrary constant",
+        "m",
+        lambda: ", ".join(str(each) for each in eq_20().free_symbols - {T}),
+        how="its letters beside t; the m of Blinn's and of Torrance and Sparrow's formula goes with a factor to choose",
     ),
     Claim(
         "S-20-peak",
@@ -176,9 +206,9 @@ CLAIMS = (
         "S-21-ends",
         "Eq. 21",
         "Eq. 21 is 0 at t = 1 - m and 1/m^2 at t = 1",
-        (0, 4),
-        lambda: tuple(float(values(eq_21(), {T: t, M: 0.5})) for t in (0.5, 1.0)),
-        how="at m = 1/2",
+        (0, 1 / M**2),
+        lambda: tuple(sp.simplify(printed_21(t)) for t in (1 - M, sp.S.One)),
+        how="symbolic, for any m",
     ),
     Claim(
         "S-21-form",

@@ -170,14 +170,6 @@ CLAIMS = (
         ),
     ),
     Claim(
-        "PM-ward-cost",
-        "Ward",
-        "the form of many books is less performant",
-        "less performant",
-        None,
-        open="no machine is named: the form trades a quotient for two products, which some have faster and some not",
-    ),
-    Claim(
         "PM-ct-energy",
         "Cook-Torrance",
         "the diffuse part, balanced with the specular one, is physically accurate: white reflects at most all light",

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import sympy as sp
 
 from ratfit.brdf import distribution, fresnel, masking
-from ratfit.claims._agreement import AtLeast, AtMost, Near, Rounded
+from ratfit.claims._agreement import AtMost, Near, Rounded
 from ratfit.claims._claim import Claim, Reading
-from ratfit.claims._directions import over_pairs
-from ratfit.claims._models import V_PRIME, T, V
+from ratfit.claims._models import T, V
 from ratfit.claims._numbers import midpoints, peak_mean, relative_mean, values
 from ratfit.claims.fresnel import F, U, curve, normal, of_figure_5
 from ratfit.claims.masking import SLOPES, M
@@ -51,25 +49,6 @@ def _over_slopes(definition: Definition, fit: sp.Expr, exact: sp.Expr, variable:
     return _mean([definition(values(fit, at), values(exact, at)) for at in places])
 
 
-def of_eq_16(definition: Definition) -> float:
-    """Eq. 16 in place of Smith's product, over pairs of directions, the mean over the m of Figure 6."""
-    exact = masking.separable(masking.smith_as_printed, V, V_PRIME, M)
-    grooves = over_pairs(masking.torrance_sparrow(T, U, V, V_PRIME))
-    return _mean([definition(grooves, over_pairs(exact, m=each)) for each in SLOPES])
-
-
-def of_whole_model(definition: Definition) -> float:
-    """Eqs. 15, 19 and 21 in place of 13, 18 and 20: the greatest error over the materials and m from 0.05 on."""
-    true, fast = _models()
-    found = []
-    for m in SLOPES[1:]:
-        share = {"alpha": m, "diffuse": 0.0, "specular_share": 1.0}
-        for eta, kappa in of_figure_5():
-            exact = over_pairs(true, eta=eta, kappa=kappa, **share)
-            found.append(definition(over_pairs(fast, f=normal((eta, kappa)), **share), exact))
-    return max(found)
-
-
 def operations(name: str) -> dict[str, int]:
     """The operations of a fit in the cheapest arrangement found, what depends on parameters alone left out."""
     return {kind: count for kind, count in derived(name).cost.as_dict().items() if count}
@@ -80,33 +59,6 @@ def timed(name: str, **setting: Any) -> float | None:
     from ratfit._speed import measure_speed
 
     return measure_speed(derived(name), backend="c-scalar", **setting).gamma
-
-
-def timed_models() -> float:
-    """How many times as long the true model takes as the approximated one, the medians of 15 rounds."""
-    import statistics
-    import time
-
-    taken: tuple[list[float], list[float]] = ([], [])
-    for _ in range(15):
-        for model, times in zip(_models(), taken, strict=True):
-            begun = time.perf_counter()
-            over_pairs(model, **GLASS)
-            times.append(time.perf_counter() - begun)
-    return statistics.median(taken[0]) / statistics.median(taken[1])
-
-
-GLASS = {"alpha": 0.25, "diffuse": 0.0, "specular_share": 1.0, "eta": 1.5, "kappa": 0.0, "f": 0.04}
-
-
-@functools.cache
-def _models() -> tuple[sp.Expr, sp.Expr]:
-    """The model by the true formulas as printed, and by Eqs. 15, 19 and 21."""
-    from ratfit.models.cook_torrance import cook_torrance
-
-    true = cook_torrance("beckmann", "conductor", "smith-as-printed")
-    fast = cook_torrance("beckmann-rational", "schlick", "schlick-as-printed")
-    return true.reflectance, fast.reflectance
 
 
 def printed(name: str) -> tuple[float, float]:
@@ -120,10 +72,12 @@ NO_DEFINITION = (
     "the source defines neither its error nor how its samples are drawn; the found number is the mean error over the "
     f"peak, which gives its figure for the sine: {SETTINGS}"
 )
-NO_MACHINE = "a ratio of times belongs to a machine, a compiler and its flags; --measure times this one"
+NO_MACHINE = (
+    "a ratio of times belongs to a machine, a compiler and its flags, which are not named; --measure times it here"
+)
 
 
-def _error(id: str, place: str, claim: str, claimed: Any, measured: Callable[[Definition], float]) -> Claim:
+def error_claim(id: str, place: str, claim: str, claimed: Any, measured: Callable[[Definition], float]) -> Claim:
     """A claim on an error: by the two definitions that come into question."""
     return Claim(
         id,
@@ -155,7 +109,7 @@ def _speed(id: str, place: str, what: str, gamma: float, name: str, **setting: A
 ARRANGED = "the cheapest arrangement found; what depends on parameters alone is computed beforehand"
 
 CLAIMS = (
-    _error("S-4.1-eps", "Section 4.1", "Eq. 12 has an error of 1.4 %", Rounded(0.014, 0.001), of_sine),
+    error_claim("S-4.1-eps", "Section 4.1", "Eq. 12 has an error of 1.4 %", Rounded(0.014, 0.001), of_sine),
     _speed("S-4.1-gamma", "Section 4.1", "Eq. 12", 2.3, "eq12"),
     Claim(
         "S-15-operations",
@@ -165,8 +119,8 @@ CLAIMS = (
         lambda: operations("eq15"),
         how=ARRANGED,
     ),
-    _error("S-15-eps", "Section 4.2", "Eq. 15 has an error of 0.6 %", Rounded(0.006, 0.001), of_fresnel),
-    _error("S-15-one-percent", "Section 4.2", "the error of Eq. 15 is less than 1 %", AtMost(0.01), of_fresnel),
+    error_claim("S-15-eps", "Section 4.2", "Eq. 15 has an error of 0.6 %", Rounded(0.006, 0.001), of_fresnel),
+    error_claim("S-15-one-percent", "Section 4.2", "the error of Eq. 15 is less than 1 %", AtMost(0.01), of_fresnel),
     _speed("S-15-gamma", "Section 4.2", "Eq. 15", 31.8, "eq15", reference="copper"),
     Claim(
         "S-15-32-times",
@@ -184,7 +138,7 @@ CLAIMS = (
         lambda: operations("eq19"),
         how=ARRANGED,
     ),
-    _error("S-19-eps", "Section 4.3", "Eq. 19 has an error of 1.8 %", Rounded(0.018, 0.001), of_smith),
+    error_claim("S-19-eps", "Section 4.3", "Eq. 19 has an error of 1.8 %", Rounded(0.018, 0.001), of_smith),
     _speed("S-19-gamma", "Section 4.3", "Eq. 19", 28.7, "eq19", parameters={"m": 0.25}),
     Claim(
         "S-21-operations",
@@ -194,7 +148,7 @@ CLAIMS = (
         lambda: operations("eq21"),
         how=ARRANGED,
     ),
-    _error("S-21-eps", "Section 4.4", "Eq. 21 has an error of 2.7 %", Rounded(0.027, 0.001), of_beckmann),
+    error_claim("S-21-eps", "Section 4.4", "Eq. 21 has an error of 2.7 %", Rounded(0.027, 0.001), of_beckmann),
     _speed("S-21-gamma", "Section 4.4", "Eq. 21", 16.5, "eq21", parameters={"m": 0.25}),
     Claim(
         "S-21-less-good",
@@ -214,33 +168,6 @@ CLAIMS = (
         0,
         lambda: sum(derived(name).cost.other for name in ("eq15", "eq19", "eq21")),
         how="the number of functions for each sample, in the cheapest arrangements found",
-    ),
-    Claim(
-        "S-4.4-whole-error",
-        "Section 4.4",
-        "Cook and Torrance's model with Eqs. 15, 19 and 21 has an error of less than 3 %",
-        AtMost(0.03),
-        None,
-        readings=(
-            Reading(
-                "the mean error over the peak of the true model, over pairs of directions, at the worst of four "
-                "materials and of m from 0.05 on; the peak is so far above the mean that this says little",
-                lambda: of_whole_model(peak_mean),
-            ),
-        ),
-        open=NO_DEFINITION,
-    ),
-    Claim(
-        "S-4.4-whole-speed",
-        "Section 4.4",
-        "Cook and Torrance's model with Eqs. 15, 19 and 21 is more than 20 times as fast",
-        AtLeast(20.0),
-        None,
-        open=NO_MACHINE,
-        measured=(Reading("timed here with NumPy, over pairs of directions", timed_models),),
-    ),
-    _error(
-        "S-fn3", "footnote 3", "Eq. 16 in place of Smith's function has an error of 53 %", Rounded(0.53, 0.01), of_eq_16
     ),
     Claim(
         "S-3-errors",

@@ -25,6 +25,20 @@ def zenith_total(r: float, high: float = 1.0) -> float:
     return integral(2 * T * Z, T, 0.0, high, {R: r})
 
 
+def total_of_product(zenith: sp.Expr, azimuth: sp.Expr) -> sp.Expr | None:
+    """The integral of Eq. 5 for a product of factors, over both angles; None where they break Eq. 26."""
+    alpha = sp.Symbol("alpha", positive=True)
+    facing = zenith.subs(T, sp.cos(alpha)) * sp.cos(alpha) * sp.sin(alpha)
+    around = azimuth.subs(W, sp.cos(PHI))
+    if (
+        sp.integrate(facing, (alpha, 0, sp.pi / 2)) != sp.S.Half
+        or sp.integrate(around, (PHI, 0, 2 * sp.pi)) != 2 * sp.pi
+    ):
+        return None
+    inner = sp.integrate(sp.expand(facing * around), (PHI, 0, 2 * sp.pi))
+    return sp.simplify(sp.integrate(inner, (alpha, 0, sp.pi / 2)))
+
+
 def off_conic(radius: Callable[[Any], Any]) -> float:
     """How far a closed curve in polar coordinates is from every conic: 0 for an ellipse.
 
@@ -103,17 +117,17 @@ CLAIMS = (
         "S-26",
         "Eq. 26",
         "with the integral of Z cos sin = 1/2 and that of A over the circle = 2 pi, the product keeps Eq. 5",
-        float(sp.pi),
-        lambda: zenith_total(0.2) / 2 * mean_azimuth(A, 0.2) * 2 * float(sp.pi),
-        how="the product of the two integrals at r = p = 1/5, A without its root",
+        (sp.pi,) * 2,
+        lambda: (total_of_product(sp.S.One, sp.S.One), total_of_product(2 * T**2, 2 * (1 - W**2))),
+        how="the double integral for Z = A = 1, and for Z = 2 cos^2(alpha), A = 2 sin^2(phi)",
     ),
     Claim(
         "S-27-weight",
         "Eqs. 26, 27",
         "in the cosine w the condition on A has the weight 1/sqrt(1 - w^2)",
-        lambda: sp.integrate(sp.cos(PHI) ** 2, (PHI, 0, sp.pi / 2)),
-        lambda: sp.integrate(W**2 / sp.sqrt(1 - W**2), (W, 0, 1)),
-        how="both integrals of w^2",
+        lambda: tuple(sp.integrate(sp.cos(PHI) ** power, (PHI, 0, sp.pi / 2)) for power in (0, 1, 2)),
+        lambda: tuple(sp.integrate(W**power / sp.sqrt(1 - W**2), (W, 0, 1)) for power in (0, 1, 2)),
+        how="both integrals of 1, w and w^2",
     ),
     Claim(
         "S-28-Z",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -131,7 +131,7 @@ def advice(system: System, fit: Fit) -> tuple[str, ...]:
         if free := _for_free(system):
             found.append(f"came for free, the other conditions imply it: {'; '.join(map(describe, free))}")
         if fit.status == "family" and not fit.choice:
-            found += _completing(system, len(fit.free), ", ".join(map(str, fit.free)))
+            found += _completing(system, [symbol.name for symbol in fit.free])
     return tuple(found)
 
 
@@ -139,13 +139,19 @@ def remarks(system: System, fit: Fit) -> tuple[str, ...]:
     """What a person should know of any answer: conditions that the target does not keep, poles not looked for."""
     found: list[str] = []
     with TimeLimit(ADVICE_SECONDS):
-        if contrary := [describe(c) for c, d in system.pairs if _is_contrary(system, c, d)]:
-            found.append(f"the target itself does not keep: {'; '.join(contrary)}")
+        contrary = [f"{describe(c)} = {shortened(str(d), 60)}" for c, d in system.pairs if _is_contrary(system, c, d)]
+        if contrary:
+            found.append(f"stated otherwise than the target has it, and kept as stated: {'; '.join(contrary)}")
     opened = {s.name: describe(c) for c, s in system.completion.facts if s in fit.free}
     if opened:
-        found.append("; ".join(f"{name} is the {what}" for name, what in opened.items()) + ", which nobody stated")
-    if fit.status == "family" and not fit.choice and fit.route != "power":
-        found.append("a family is not searched for poles: a choice (--set) is")
+        found.append(
+            f"{'; '.join(f'{name} is the {what}' for name, what in opened.items())}, which no condition states"
+        )
+    left = [symbol.name for symbol in fit.free if symbol not in fit.choice]
+    if left and fit.route != "power":
+        have = "has a value" if len(left) == 1 else "have values"
+        values = " ".join(f"--set {name}=..." for name in left)
+        found.append(f"poles are looked for once {', '.join(left)} {have}: {values}")
     return tuple(found)
 
 
@@ -186,13 +192,13 @@ def _rank(groups: Iterable[list[Row]]) -> int:
     return numerical_rank(everything)
 
 
-def _completing(system: System, missing: int, names: str) -> list[str]:
+def _completing(system: System, names: Sequence[str]) -> list[str]:
     """Conditions that would leave nothing free, each a fact of the target that adds to the rank."""
     whole = completed(system)
     rank = numerical_rank(rows(whole))
     chosen: list[str] = []
     for condition in _further(system):
-        if len(chosen) == missing:
+        if len(chosen) == len(names):
             break
         try:
             pair = (condition, condition.demanded(system.problem.target))
@@ -205,10 +211,9 @@ def _completing(system: System, missing: int, names: str) -> list[str]:
             chosen.append(option(condition))
     if not chosen:
         return []
-    words = "a further condition" if missing == 1 else f"{missing} further conditions"
-    return [
-        f"{names} free: {words} would single out one, such as {' '.join(chosen)}; or choose, as in --set NAME=VALUE"
-    ]
+    more = "a further condition leaves" if len(names) == 1 else f"{len(names)} further conditions leave"
+    values = " ".join(f"--set {name}=..." for name in names)
+    return [f"{', '.join(names)} free: {more} one fit, such as {' '.join(chosen)}; or choose: {values}"]
 
 
 def _further(system: System) -> Iterator[AbstractCondition]:

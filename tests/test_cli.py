@@ -309,6 +309,35 @@ def test_clashing_conditions_are_an_honest_no(run):
     assert "value at 0" in run(*arguments)[1]
 
 
+EXP = ["exp(x)", "--on", "0", "1", "--form", "1/1"]
+OTHERWISE = "stated otherwise than the target has it, and kept as stated: value at 19/10 = 1; derivative at 19/10 = 0"
+ONE_MORE = "b1 free: a further condition leaves one fit, such as --derivative 0; or choose: --set b1=..."
+POLES = "poles are looked for once b1 has a value: --set b1=..."
+
+
+@pytest.mark.parametrize(
+    ("words", "advice"),
+    [
+        (["smith-1967"], [OTHERWISE]),
+        (["eq19"], []),
+        (["eq15"], []),
+        ([*EXP, "--value", "0", "--value", "1"], [ONE_MORE, POLES]),
+        ([*EXP, "--value", "0", "--set", "a1=1"], [POLES]),
+        (
+            [*EXP, "--equation", "y' - y;at=0", "--value", "1"],
+            [
+                "s0 is the derivative at 0, which no condition states",
+                "poles are looked for once s0 has a value: --set s0=...",
+            ],
+        ),
+    ],
+    ids=lambda words: " ".join(words)[:40],
+)
+def test_advice_is_one_that_can_be_taken(run, words, advice):
+    status, _, err = run("derive", *words)
+    assert (status, err.splitlines()) == (0, [f"ratfit: {line}" for line in advice])
+
+
 def test_a_family_is_a_no_only_when_unique_is_asked(run):
     assert run("derive", "eq15")[0] == 0
     status, out, _ = run("derive", "eq15", "--unique", "--format", "json")

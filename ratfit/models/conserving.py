@@ -1,49 +1,41 @@
 """Schlick's model with a re-emission that conserves energy: reciprocal, and its albedo is at most 1 everywhere.
 
 What facets hide is given back as kulla2017 do it, (1 - E(v)) (1 - E(v'))/(pi (1 - E_mean)), in place of
-(1 - G G')/(4 pi v v'), which grows without bound at grazing angles. Two things make the albedo at most 1:
+(1 - G G')/(4 pi v v'), which grows without bound at grazing angles. Three things make the albedo at most 1:
 
 - The masking is v/(v + k (1 - v)) with k = sqrt(r)/(1 + p) in place of r. With k = r (schlick1994, Eq. 31) facets alone
   reflect up to 2.6 times what they receive (r = 0.01, v = 0.01). With this k, G is below the exact masking of Z A in
   whatever azimuth: for p = 1 that of GGX, for p -> 0 that of slopes along one line, 1/(1 + x atan(x)/2) with
   x = sqrt(r (1 - v^2))/v, of which no other p comes below.
-- E is no less than the albedo of those facets in any azimuth. It is a closed form, `hidden`, whose 18 coefficients
-  were found once by a linear programme: below 1 - albedo for every r, p and azimuth, and nowhere far below: weighted by
-  b = 4 r (1 - r), as the model does, a white isotropic surface loses 1.8 % of the light at most. For p < 1 it loses
-  more, as E is that of the azimuth that reflects most: 42 % of what comes along the scratches, grazing, at r = 0.3,
-  p = 0.2.
+- That masking knows no azimuth, so facets reflect less along their scratches than across, and what they hide there has
+  to come back there: it is bounded from below by T(v) + x^2 B(v), x the view's component along the tangent
+  (`ratfit.models._hidden`). A reflectance in the letters t, u, v, v', w cannot have x and the light's x' apart, but
+  their sum: (x + x')^2 = 4 u^2 (1 - t^2) w^2. That is enough, because in the mean over the light x x' is 0: the
+  re-emission (A A'/A_mean + (x + x')^2 B B'/B_mean)/pi comes to A + (x^2 + s) B, with s the mean of x'^2 weighted by
+  B' v'; so A is T - s B. What is left is what no square of x says: white surfaces lose at most 5.8 % of the light,
+  those without scratches 2.9 %.
+- Of two layers the lower one has what the upper one leaves, on the way in and on the way out: 1 - C of it, for a layer
+  of S(u) = C + (1 - C) (1 - u)^5 reflects no more than C + (1 - C) E(v), E being the `sheen` of a layer with C = 0.
+  The lesser of 1 - E(v) and 1 - E(v') is the share: reciprocal, and what a mirror below a mirror has exactly.
 
 Multiplied by S(u) <= 1 the facets reflect less; the re-emission is coloured by many reflections of the mean S.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import sympy as sp
 
+from ratfit.models import _hidden
 from ratfit.models._model import Model
-from ratfit.models._schlick import Layer, azimuth, both_visible, distributed, layer, mirror, weighted_zenith, weights
-from ratfit.models.directions import V_PRIME, U, V
+from ratfit.models._schlick import Layer, both_visible, distributed, layer, mirror, weighted_lobe, weights
+from ratfit.models.directions import SINE2, V_PRIME, W2, U, V
 from ratfit.models.schlick import DEFAULTS, SPECTRAL
-
-ENDS = sp.Rational(1, 10)
-"""hidden = r/(r + ENDS) times `hidden_shape`."""
-
-COEFFICIENTS: Mapping[tuple[int, int, int], sp.Rational] = {
-    powers: sp.Rational(number)
-    for powers, number in {
-        (0, 0, 0): "0.0373", (0, 0, 1): "-0.0191", (0, 1, 0): "-0.1182", (0, 1, 1): "-0.0156",
-        (0, 2, 0): "0.5874", (0, 2, 1): "-0.0945", (1, 0, 0): "1.8656", (1, 0, 1): "-0.4022",
-        (1, 1, 0): "-4.1481", (1, 1, 1): "1.5517", (1, 2, 0): "2.8747", (1, 2, 1): "-0.4644",
-        (2, 0, 0): "-1.9010", (2, 0, 1): "0.4198", (2, 1, 0): "5.4458", (2, 1, 1): "-1.8688",
-        (2, 2, 0): "-3.0681", (2, 2, 1): "0.7925",
-    }.items()
-}  # fmt: skip
-"""Of v^i alpha^j p^k, with alpha = sqrt(r)."""
 
 MEAN_POWER = sp.Rational(1, 21)
 """The mean of (1 - u)^5 over a hemisphere, weighted by the cosine."""
+
+TANGENTIAL = 4 * U**2 * SINE2 * W2
+"""The square of the component of V + V' along the tangent."""
 
 
 def roughness(r: sp.Expr) -> sp.Expr:
@@ -52,72 +44,86 @@ def roughness(r: sp.Expr) -> sp.Expr:
     return sp.sqrt(sp.Piecewise((tiny, r < tiny), (r, True)))
 
 
-def hidden_shape(v: sp.Expr, alpha: sp.Expr, p: sp.Expr) -> sp.Expr:
-    """(1 - E(v)) (r + ENDS)/r, a polynomial over v + r."""
-    return _polynomial(alpha, p, [sp.S.One, v, v**2]) / (v + alpha**2)
-
-
-def hidden_shape_mean(alpha: sp.Expr, p: sp.Expr) -> sp.Expr:
-    """The mean of `hidden_shape` over the hemisphere, weighted by the cosine."""
-    r = alpha**2
-    moments = [sp.log((1 + r) / r)]  # of v^n/(v + r)
-    for n in (1, 2, 3):
-        moments.append(sp.Rational(1, n) - r * moments[-1])
-    return 2 * _polynomial(alpha, p, moments[1:])
-
-
-def hidden(v: sp.Expr, r: sp.Expr, p: sp.Expr) -> sp.Expr:
-    """1 - E(v), less than what facets hide or throw below the horizon, in any azimuth; r > 0."""
-    return r / (r + ENDS) * hidden_shape(v, sp.sqrt(r), p)
-
-
-def _polynomial(alpha: sp.Expr, p: sp.Expr, of_v: list[sp.Expr]) -> sp.Expr:
-    """The polynomial in v, its powers of v being something else."""
-    rows = [sum(c * alpha**j * p**k for (i, j, k), c in COEFFICIENTS.items() if i == n) for n in range(len(of_v))]
-    return sp.Add(*(row * power for row, power in zip(rows, of_v, strict=True)))
-
-
 def facets(layer: Layer) -> sp.Expr:
     """b times G G' Z A/(4 pi v v') with k = sqrt(r)/(1 + p) in place of r, of albedo 1 at most."""
-    lobe = weighted_zenith(layer.r) * azimuth(layer.p)
-    return lobe / (sp.pi * both_visible(roughness(layer.r) / (1 + layer.p)))
+    return weighted_lobe(layer).value / (sp.pi * both_visible(roughness(layer.r) / (1 + layer.p)))
+
+
+def hidden(v: sp.Expr, x: sp.Expr, r: sp.Expr, p: sp.Expr) -> sp.Expr:
+    """T + x^2 B, less than what facets hide or throw below the horizon; r > 0."""
+    alpha = sp.sqrt(r)
+    return r / (r + _hidden.ENDS) * (_hidden.across(v, alpha, p) + x**2 * (1 - p) * _hidden.along(v, alpha))
+
+
+def hidden_mean(layer: Layer) -> sp.Expr:
+    """The mean of T + x^2 B over the hemisphere, weighted by the cosine."""
+    alpha, p = roughness(layer.r), layer.p
+    whole = _hidden.across_mean(alpha, p) + (1 - p) * _hidden.along_mean_of_square(alpha)
+    return alpha**2 / (alpha**2 + _hidden.ENDS) * whole
 
 
 def reemitted(layer: Layer) -> sp.Expr:
     """b times the re-emission, without its colour."""
     alpha, p = roughness(layer.r), layer.p
-    shape = hidden_shape(V, alpha, p) * hidden_shape(V_PRIME, alpha, p) / hidden_shape_mean(alpha, p)
-    return weights(layer.r)[1] * layer.r / (layer.r + ENDS) * shape / sp.pi
+    square, mean = _hidden.along_mean_of_square(alpha), _hidden.along_mean(alpha)
+    rest = (1 - p) * square / mean
+    seen, lit = (_hidden.across(v, alpha, p) - rest * _hidden.along(v, alpha) for v in (V, V_PRIME))
+    even = seen * lit / (_hidden.across_mean(alpha, p) - (1 - p) * square)
+    scratched = (1 - p) * TANGENTIAL * _hidden.along(V, alpha) * _hidden.along(V_PRIME, alpha) / mean
+    return weights(layer.r)[1] * layer.r / (layer.r + _hidden.ENDS) * (even + scratched) / sp.pi
 
 
 def many_times(mean: sp.Expr, layer: Layer) -> sp.Expr:
     """What is left of light that comes out after two reflections or more, each by the mean S (kulla2017)."""
-    alpha = roughness(layer.r)
-    lost = alpha**2 / (alpha**2 + ENDS) * hidden_shape_mean(alpha, layer.p)
+    lost = hidden_mean(layer)
     return mean**2 * (1 - lost) / (1 - mean * lost)
 
 
-def conserving(spectral: str, name: str) -> Model:
-    """One layer that conserves energy: diffuser, facets with what they hide, and mirror, by the weights of Eq. 33."""
-    s, where = SPECTRAL[spectral]
-    one = layer("", sp.S.Zero)
-    mean = one.c if spectral == "constant" else one.c + (1 - one.c) * MEAN_POWER
-    single = s(U, one.c) * (weights(one.r)[0] / sp.pi + facets(one))
+def one_layer(spectral: str, layer: Layer) -> sp.Expr:
+    """Diffuser, facets with what they hide, and mirror, by the weights of Eq. 33; the mirror is not of the formula."""
+    mean = layer.c if spectral == "constant" else layer.c + (1 - layer.c) * MEAN_POWER
+    single = SPECTRAL[spectral][0](U, layer.c) * (weights(layer.r)[0] / sp.pi + facets(layer))
+    return single + many_times(mean, layer) * reemitted(layer)
+
+
+def left(spectral: str, layer: Layer, v: sp.Expr) -> sp.Expr:
+    """What the layer leaves of light that comes or goes at v, at least, over 1 - C."""
+    if spectral == "constant":
+        return sp.S.One
+    c = mirror(layer.r)
+    return 1 - c * (1 - v) ** 5 - (1 - c) * _hidden.sheen(v, roughness(layer.r))
+
+
+def conserving(spectral: str, name: str, *, layers: int = 1) -> Model:
+    """One layer that conserves energy, or two."""
+    where = SPECTRAL[spectral][1]
+    upper, lower = layer("", sp.S.Zero), layer("_prime", sp.S.Zero)
+
+    def formula() -> sp.Expr:
+        share = (1 - upper.c) * sp.Min(left(spectral, upper, V), left(spectral, upper, V_PRIME))
+        return one_layer(spectral, upper) + (share * one_layer(spectral, lower) if layers == 2 else 0)
+
+    def mirrors() -> sp.Expr:
+        above, below = (SPECTRAL[spectral][0](V, each.c) * mirror(each.r) for each in (upper, lower))
+        return above + ((1 - upper.c) * left(spectral, upper, V) * below if layers == 2 else 0)
+
+    parameters = (*upper, *lower)[: 3 * layers]
     return Model(
         name,
-        f"Schlick's one layer with a re-emission that conserves energy: {spectral}",
-        single + many_times(mean, one) * reemitted(one),
-        tuple(one),
+        f"Schlick's {'one layer' if layers == 1 else 'two layers'} with re-emissions that conserve energy: {spectral}",
+        formula,
+        parameters,
         f"schlick1994, Eqs. 22, 28, 32, 33 and {where[4:]}; kulla2017",
-        {p.name: value for p, value in zip(one, DEFAULTS[0], strict=True)},
-        s(V, one.c) * mirror(one.r),
-        distribution=lambda: distributed(one),
+        dict(zip([p.name for p in parameters], DEFAULTS[0] + DEFAULTS[1], strict=False)),
+        mirrors,
+        distribution=(lambda: distributed(upper)) if layers == 1 else None,
         sampler="schlick",
-        note="The albedo is at most 1, C = 1 included; the part of it that C = 1, p = 1 lose is 1.8 % at most.",
+        note="The albedo is at most 1, C = 1 included; white surfaces lose 5.8 % of the light at most.",
     )
 
 
 CONSERVING: tuple[Model, ...] = (
     conserving("fresnel", "schlick-conserving"),
     conserving("constant", "schlick-23-conserving"),
+    conserving("fresnel", "schlick-double-conserving", layers=2),
 )

@@ -1,0 +1,92 @@
+"""What the facets of `conserving` do not reflect, from below, and what a layer without a colour of its own reflects.
+
+Facets with a masking that knows no azimuth reflect less along their scratches than across. For a view of cosine v whose
+component along the tangent is x, they leave at least `across(v) + x^2 along(v)` of the light, r/(r + ENDS) times what
+is computed here. The coefficients come from linear programmes: `python -m ratfit.models.conserving_fit` prints them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import sympy as sp
+
+ENDS = sp.Rational(1, 10)
+"""What is hidden is r/(r + ENDS) times `across` and `along`."""
+
+STEEPNESS = 20
+"""`sheen` falls as 1/(1 + STEEPNESS alpha)."""
+
+Powers = tuple[int, int, int]
+
+
+def _exact(decimals: Mapping[Powers, str]) -> Mapping[Powers, sp.Rational]:
+    return {powers: sp.Rational(number) for powers, number in decimals.items()}
+
+
+ACROSS = _exact({
+    (0, 0, 0): "0.04733", (0, 0, 1): "-0.02377", (0, 1, 0): "-0.15843", (0, 1, 1): "-0.00043",
+    (0, 2, 0): "0.61438", (0, 2, 1): "-0.08883", (1, 0, 0): "1.12062", (1, 0, 1): "0.14515",
+    (1, 1, 0): "-2.12614", (1, 1, 1): "0.05134", (1, 2, 0): "1.50892", (1, 2, 1): "0.35618",
+    (2, 0, 0): "-1.05771", (2, 0, 1): "-0.19189", (2, 1, 0): "3.09454", (2, 1, 1): "-0.18981",
+    (2, 2, 0): "-1.41955", (2, 2, 1): "-0.15958",
+})  # fmt: skip
+"""Of v^i alpha^j p^k, with alpha = sqrt(r)."""
+
+ALONG = _exact({
+    (0, 0, 0): "0.04278", (0, 1, 0): "0.08462", (0, 2, 0): "0.46904", (1, 0, 0): "1.13666",
+    (1, 1, 0): "-0.67072", (1, 2, 0): "0.10646", (2, 0, 0): "-1.18844", (2, 1, 0): "1.48708",
+    (2, 2, 0): "-0.67364",
+})  # fmt: skip
+"""The same."""
+
+SHEEN = _exact({
+    (0, 0, 0): "0.12930", (0, 1, 0): "-0.08173", (3, 0, 0): "0.82870", (3, 1, 0): "-0.27661",
+})  # fmt: skip
+"""Of (1 - v)^i alpha^j; k is 0."""
+
+
+def across(v: sp.Expr, alpha: sp.Expr, p: sp.Expr) -> sp.Expr:
+    """What is left of light that comes across the scratches: a polynomial over v + r."""
+    return _polynomial(ACROSS, alpha, p, [v**n for n in range(3)]) / (v + alpha**2)
+
+
+def along(v: sp.Expr, alpha: sp.Expr) -> sp.Expr:
+    """How much more is left where x = 1, over 1 - p: for p = 1 all azimuths are alike."""
+    return _polynomial(ALONG, alpha, sp.S.One, [v**n for n in range(3)]) / (v + alpha**2)
+
+
+def across_mean(alpha: sp.Expr, p: sp.Expr) -> sp.Expr:
+    """The mean of `across` over the hemisphere, weighted by the cosine."""
+    return 2 * _polynomial(ACROSS, alpha, p, _moments(alpha**2)[1:4])
+
+
+def along_mean(alpha: sp.Expr) -> sp.Expr:
+    """That of `along`."""
+    return 2 * _polynomial(ALONG, alpha, sp.S.One, _moments(alpha**2)[1:4])
+
+
+def along_mean_of_square(alpha: sp.Expr) -> sp.Expr:
+    """That of x^2 `along`."""
+    moments = _moments(alpha**2)
+    squares = [moments[n] - moments[n + 2] for n in (1, 2, 3)]  # x^2 is (1 - v^2)/2 in the mean of all azimuths
+    return _polynomial(ALONG, alpha, sp.S.One, squares)
+
+
+def sheen(v: sp.Expr, alpha: sp.Expr) -> sp.Expr:
+    """No less than what diffuser and facets of S(u) = (1 - u)^5 reflect, by their weights, over the sum of these."""
+    return _polynomial(SHEEN, alpha, sp.S.One, [(1 - v) ** n for n in range(4)]) / (1 + STEEPNESS * alpha)
+
+
+def _moments(r: sp.Expr) -> list[sp.Expr]:
+    """The integrals of v^n/(v + r) over [0, 1]."""
+    moments = [sp.log((1 + r) / r)]
+    for n in range(1, 6):
+        moments.append(sp.Rational(1, n) - r * moments[-1])
+    return moments
+
+
+def _polynomial(coefficients: Mapping[Powers, sp.Expr], alpha: sp.Expr, p: sp.Expr, of_v: list[sp.Expr]) -> sp.Expr:
+    """The sum of coefficients times of_v[i] alpha^j p^k."""
+    rows = [sum(c * alpha**j * p**k for (i, j, k), c in coefficients.items() if i == n) for n in range(len(of_v))]
+    return sp.Add(*(row * power for row, power in zip(rows, of_v, strict=True)))

@@ -30,6 +30,8 @@ QUIET = ["--IPKernelApp.log_level=ERROR", "--InteractiveShell.colors=nocolor"]
 KERNEL = {"kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"}}
 LANGUAGE = {"language_info": {"name": "python"}}
 
+PICTURES = ("image/jpeg", "image/png", "image/svg+xml")
+
 PRIVATE = re.compile(r"/(?:home|root|tmp|usr|opt|work|Users)/|site-packages|[A-Z]:\\|\bWarning\b|0x[0-9a-f]{6,}")
 """What has no place in a saved output: paths of a machine, warnings, addresses of objects."""
 
@@ -84,6 +86,8 @@ def _unrun(cell: NotebookNode) -> dict[str, object]:
 def tidied(notebook: NotebookNode) -> NotebookNode:
     """What is saved of an executed notebook: the kernel's own metadata (a version, a mode of an editor) is left out.
 
+    Of a picture its words stay, which a page shows to those who do not see it.
+
     What a cell prints in pieces becomes one piece: where it was cut depends on the kernel's clock.
     """
     notebook.metadata = nbformat.from_dict({**KERNEL, **LANGUAGE})
@@ -92,10 +96,14 @@ def tidied(notebook: NotebookNode) -> NotebookNode:
             cell.outputs = _joined(cell.outputs)
             for output in cell.outputs:
                 if "metadata" in output:
-                    output.metadata = nbformat.from_dict({})
+                    output.metadata = nbformat.from_dict(_words_alone(output.metadata))
                 if "image/png" in output.get("data", {}):
                     output.data["image/png"] = _in_few_colours(output.data["image/png"])
     return notebook
+
+
+def _words_alone(metadata: NotebookNode) -> dict[str, dict[str, str]]:
+    return {kind: {"alt": about["alt"]} for kind, about in metadata.items() if kind in PICTURES and "alt" in about}
 
 
 def _in_few_colours(png: str) -> str:
@@ -145,15 +153,15 @@ def _compared(cell: NotebookNode, timing: bool) -> list[str]:
 
 
 def shown(cell: NotebookNode) -> list[tuple[str, str]]:
-    """The outputs of a cell as (kind, text); of a picture that there is one, not its size in dots."""
+    """The outputs of a cell as (kind, text); of a picture its words, not its size in dots."""
     found = []
     for output in cell.get("outputs", ()):
         if output.output_type == "stream":
             found.append((output.name, output.text))
         else:
             data = output.get("data", {})
-            pictures = [kind for kind in sorted(data) if kind.startswith("image/")]
-            found += [(kind, "") for kind in pictures] or [(kind, str(data[kind])) for kind in sorted(data)]
+            pictures = [(kind, output.metadata.get(kind, {}).get("alt", "")) for kind in PICTURES if kind in data]
+            found += pictures or [(kind, str(data[kind])) for kind in sorted(data)]
     return found
 
 

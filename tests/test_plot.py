@@ -345,8 +345,24 @@ def test_a_picture_shows_itself_in_a_notebook(sine):
     picture = sine.plot()
     assert isinstance(picture, Picture) and tuple(picture) == (picture.curves, picture.strip)
     width, height = picture.curves.figure.get_size_inches() * picture.curves.figure.dpi
-    assert png_size(picture._repr_png_()) == (round(width), round(height))
-    assert png_size(rf.derive("eq15").plot()._repr_png_())[0] == 660, "curves alone"
+    assert png_size(picture._repr_png_()[0]) == (round(width), round(height))
+    assert png_size(rf.derive("eq15").plot()._repr_png_()[0])[0] == 660, "curves alone"
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [
+        ("eq12", {}, ["f(x) over x", "exact: \\sin{\\left(x \\right)}", "value: f(0) = 0"]),
+        ("eq12", {}, ["beneath, error / peak, worst −2.6 % at x = 0.83"]),
+        ("eq15", {}, ["F(u) over u at f = 0.5 (mid-range)", "no target to compare with"]),
+        ("eq19", {"parameters": {"m": [0.1, 0.5]}}, ["smith", "m = 0.1: worst −9.8 %", "m = 0.5: worst 4.6 %"]),
+    ],
+)  # fmt: skip
+def test_a_picture_in_words_for_those_who_do_not_see_it(name, options, words):
+    picture = rf.derive(name).plot(**options)
+    _, about = picture._repr_png_()
+    assert all(each in about["alt"] for each in words), about["alt"]
+    assert "$" not in about["alt"] and "\n" not in about["alt"]
 
 
 def test_a_picture_of_pyplots_is_left_to_pyplot(sine):
@@ -354,7 +370,7 @@ def test_a_picture_of_pyplots_is_left_to_pyplot(sine):
     from matplotlib.figure import Figure
 
     parts = Figure(figsize=(8, 4), dpi=100).subfigures(1, 2)
-    assert png_size(sine.plot(parts[0].subplots(2))._repr_png_()) == (800, 400), "the whole of a divided figure"
+    assert png_size(sine.plot(parts[0].subplots(2))._repr_png_()[0]) == (800, 400), "the whole of a divided figure"
     backend = pyplot.get_backend()
     pyplot.switch_backend("agg")
     try:

@@ -1,7 +1,7 @@
 """A metal's Fresnel factor with both parts of its index symbolic, by what it does at both ends."""
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import mpmath
 import pytest
@@ -11,7 +11,13 @@ import ratfit as rf
 from ratfit._solver import plain
 from ratfit._solver.naming import named, names_of
 from ratfit._solver.squares import without_squares
+from ratfit._study.clock import Clock
+from ratfit._study.curve import Curve
+from ratfit._study.ends import end_facts
+from ratfit._study.fact import Study
 from ratfit.gallery import card
+from ratfit.report.parts import in_parts
+from ratfit.report.study import study_text
 
 METALS = [("29/100", "2863/1000"), ("147/50", "299/100"), ("7/10", "8")]
 
@@ -49,12 +55,11 @@ def test_a_metal_is_derived_with_its_index_symbolic(orders_at_0, orders_at_1, fo
         function = sp.lambdify(fit.problem.variable, fit.expression.xreplace(given), "mpmath")
         with mpmath.workdps(60):
             index = mpmath.mpc(*(mpmath.mpf(value.p) / value.q for value in given.values()))
-            for at, orders in ((0, orders_at_0), (1, orders_at_1)):
-                side = 1 if at == 0 else -1
+            exact = partial(fresnel_factor, index=index)
+            for at, orders, side in ((0, orders_at_0, 1), (1, orders_at_1, -1)):
                 for order in range(orders):
-                    ours = mpmath.diff(lambda d, at=at: function(at + d), 0, order, direction=side)
-                    exact = mpmath.diff(lambda d, at=at: fresnel_factor(at + d, index), 0, order, direction=side)
-                    assert abs(ours - exact) < 1e-9 * (1 + abs(exact)), (values, at, order)
+                    ours, true = (mpmath.diff(f, at, order, direction=side) for f in (function, exact))
+                    assert abs(ours - true) < 1e-9 * (1 + abs(true)), (values, at, order)
 
 
 a, b = (rf.parameter(name, "1/2", 2) for name in "ab")
@@ -66,7 +71,7 @@ c = rf.parameter("c", -1, 1)
     [
         (sp.sqrt(4 * a**2 * b**2 + (a**2 - b**2) ** 2), a**2 + b**2),
         (sp.sqrt(a**2 - b**2 + sp.sqrt(a**4 + 2 * a**2 * b**2 + b**4)), sp.sqrt(2) * a),
-        (1 / sp.sqrt((a**3 + 2 * a**2 * b + a * b**2)), 1 / (sp.sqrt(a) * (a + b))),
+        (1 / sp.sqrt(a**3 + 2 * a**2 * b + a * b**2), 1 / (sp.sqrt(a) * (a + b))),
         (sp.sqrt(sp.expand((a + c + 1) ** 2)), sp.sqrt(sp.expand((a + c + 1) ** 2))),  # 3/2 - 1 ... 4: no sign known
         (sp.sqrt(sp.expand((c**2 + 1) ** 2 * c)), (c**2 + 1) * sp.sqrt(c)),
         (sp.sqrt(1 + a**2), sp.sqrt(1 + a**2)),
@@ -94,3 +99,37 @@ def test_names_stand_for_numbers_of_parameters_once_a_number_is_deep():
     shown = named([deep, flat, bare, a], meaning)
     assert shown[2:] == (bare, a) and [meaning[name] for name in shown[:2]] == [deep, flat]
     assert names_of([flat, bare, sp.sqrt(a)], depth=2) == {}
+
+
+def test_a_study_of_metals_has_short_closed_forms_at_both_ends():
+    problem = card("conductor").problem
+    facts = {}
+    for fact in end_facts(Curve(problem.target), Clock(1000)):
+        facts[fact.text.partition(" =")[0]] = fact
+        if len(facts) == 4:
+            break
+    assert all(fact.found == "symbolic" for fact in facts.values())
+    assert facts["f(0)"].text == "f(0) = 1" and facts["f'(1)"].text == "f'(1) = 0"
+    assert len(facts["f(1)"].text) < 80
+    text = study_text(Study(problem.target, tuple(facts.values())))
+    assert max(map(len, text.splitlines())) < 160 and "where p = sqrt(" in text
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        card("conductor").problem.target.expression,
+        sp.sqrt(a**2 + b**2 + 17) ** 3 + sp.exp(-sp.sqrt(a**2 + b**2 + 17)) + sp.sin(a * b + sp.sqrt(a**2 + b**2 + 17)),
+        sum(sp.Symbol(letter) * sp.sqrt(a**5 + b**k + 1234567) for k, letter in enumerate("pqr", 2)) ** 3,
+    ],
+)
+def test_parts_put_together_are_the_whole(expression):
+    whole, parts = in_parts(expression, ["u"])
+    assert len({name for name, _ in parts} | expression.free_symbols) == len(parts) + len(expression.free_symbols)
+    for name, part in reversed(parts):
+        whole = whole.subs(name, part)
+    assert sp.expand(whole - expression) == 0 and (parts or len(str(expression)) < 121 or "p" in str(expression))
+
+
+def test_what_is_short_has_no_parts():
+    assert in_parts(a + b) == (a + b, ())

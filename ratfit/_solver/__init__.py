@@ -9,4 +9,5 @@ from ratfit._solver.solution import Numbers as Numbers
 from ratfit._solver.solution import Solution as Solution
 from ratfit._solver.solution import Table as Table
 from ratfit._solver.solution import Undecided as Undecided
+from ratfit._solver.squares import normal as normal
 from ratfit._solver.squares import plain as plain

@@ -10,6 +10,7 @@ from ratfit._field import Field
 from ratfit._generators import sampled_inside
 from ratfit._parse import RatfitError
 from ratfit._solver.solution import Undecided
+from ratfit._solver.squares import normal
 
 Assignment = dict[sp.Symbol, sp.Expr]
 
@@ -52,7 +53,7 @@ def solutions(equations: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol]) -> It
             continue
         others = [u for u in unknowns if u != symbol]
         for assignment in solutions([e.subs(symbol, value) for e in rest], others):
-            yield {**assignment, symbol: _normal(value.subs(assignment))}
+            yield {**assignment, symbol: normal(value.subs(assignment))}
 
 
 def _polynomials(equations: Sequence[sp.Expr]) -> list[sp.Expr]:
@@ -144,7 +145,7 @@ def _with_and_without(polynomials, place, symbol, unknowns) -> Iterator[Assignme
     remaining = [u for u in unknowns if u != symbol]
     for assignment in solutions([e.subs(symbol, value) for e in others], remaining):
         if not _vanishes(slope.subs(assignment)):
-            yield {**assignment, symbol: _normal(value.subs(assignment))}
+            yield {**assignment, symbol: normal(value.subs(assignment))}
     yield from solutions([*others, slope, rest], unknowns)
 
 
@@ -178,7 +179,7 @@ def _roots(polynomial: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
     if degree == 2:
         a, b, c = coefficients
         root = sp.sqrt(sp.factor(sp.expand(b**2 - 4 * a * c)))
-        return [_normal((-b + sign * root) / (2 * a)) for sign in (1, -1)]
+        return [normal((-b + sign * root) / (2 * a)) for sign in (1, -1)]
     if all(c.is_Rational for c in coefficients):
         _, factors = sp.Poly(polynomial, symbol).factor_list()
         if len(factors) > 1:
@@ -197,15 +198,6 @@ def is_complex(value: sp.Expr) -> bool:
     except RatfitError:
         return True
     return False
-
-
-def _normal(value: sp.Expr) -> sp.Expr:
-    """The shortest form of a value in the exact field; a value that is not real stays as it is."""
-    try:
-        field = Field([value])
-        return field.decode(field.encode(value))
-    except RatfitError:
-        return value
 
 
 def _by_groebner(polynomials, unknowns) -> Iterator[tuple[sp.Symbol, sp.Expr, list[sp.Expr]]]:

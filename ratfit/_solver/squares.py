@@ -59,12 +59,15 @@ def _size(base: sp.Expr) -> sp.Expr | None:
 
 
 def plain(number: sp.Expr) -> sp.Expr:
-    """A number without squares in its roots, in the shortest form of the exact field; as it was where none is there."""
+    """A number without squares in its roots, in the normal form of the exact field; as it was where none is there."""
     rooted = without_squares(number)
-    if rooted == number:
-        return number
+    return number if rooted == number else normal(rooted)
+
+
+def normal(number: sp.Expr) -> sp.Expr:
+    """A number in the normal form of the exact field; one that is not real stays as it is."""
     try:
-        field = Field([rooted])
-        return field.decode(field.encode(rooted))
+        field = Field([number])
+        return field.decode(field.encode(number))
     except RatfitError:
-        return rooted
+        return number

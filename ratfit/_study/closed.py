@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import mpmath
 import sympy as sp
@@ -11,6 +12,7 @@ from ratfit._field import is_zero
 from ratfit._generators import sampled
 from ratfit._multiprecise import multiprecise
 from ratfit._parse import RatfitError, parse_expression
+from ratfit._solver import normal, plain
 from ratfit._study.clock import Clock
 from ratfit._study.crossings import kinked_arguments
 from ratfit._study.curve import DIGITS, Curve
@@ -160,9 +162,13 @@ def inside(place: sp.Expr, target: Target) -> bool:
 
 
 def shorter(expression: sp.Expr, clock: Clock) -> sp.Expr:
-    """The expression simplified, where that makes it shorter to write and nests nothing deeper."""
+    """The expression without squares in its roots, in the exact field's form, or simplified, where that is shorter."""
     if expression.is_Atom or expression.is_Rational:
         return expression
+    for way in (plain, normal):
+        found = clock.attempt(partial(way, expression))
+        if found is not None and len(str(found)) < len(str(expression)):
+            expression = found
     simple = clock.attempt(lambda: sp.simplify(expression), seconds=0.5)
     if simple is None or len(str(simple)) >= len(str(expression)) or _depth(simple) > _depth(expression):
         return expression

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
 import mpmath
@@ -18,32 +18,43 @@ from ratfit._study.fact import SYMBOLIC, Fact
 KINDS = ("value", "slope", "curvature")
 MARKS = ("f", "f'", "f''")
 
+LIMIT_SECONDS = 4.0
+"""How long a limit at an end may take: the curvature of a metal's Fresnel factor takes two and a half."""
+
 
 def end_facts(curve: Curve, clock: Clock) -> Iterator[Fact]:
-    """Value and first two derivatives at both ends, from inside the domain."""
-    for end, side in zip(curve.target.domain, (1, -1), strict=True):
-        if not end.is_infinite:
-            yield from _at_end(curve, clock, end, side)
-
-
-def _at_end(curve: Curve, clock: Clock, end: sp.Expr, side: int) -> Iterator[Fact]:
+    """Value and first two derivatives at both ends, from inside the domain; values first, found soonest."""
+    ends = [(end, side) for end, side in zip(curve.target.domain, (1, -1), strict=True) if not end.is_infinite]
     for order in range(3):
-        where = f"{MARKS[order]} at {curve.x} = {end}"
-        value = None
-        if not _is_infinite(curve, side, order):  # sympy would look long for a limit that is not there
-            value = clock.attempt(lambda k=order: curve.target.derivative(end, k), where, 1.5)  # type: ignore[misc]
-        if value is not None and agrees(curve, curve.expression(order), end, side, value):
-            value = shorter(value, clock)
-            text = f"{MARKS[order]}({end}) = {value}"
-            yield Fact(KINDS[order], text, condition_at(end, order), SYMBOLIC, end, value)
-            continue
-        fact = _by_numbers(curve, end, side, order)
-        if fact is None:
-            clock.notes.append(f"{where}: no limit found, neither by sympy nor by numbers")
-            return
-        yield fact
-        if fact.value is None:
-            return  # infinite: the derivatives that follow are too
+        finite = []
+        for end, side in ends:
+            fact = _at_end(curve, clock, end, side, order)
+            if fact is None:
+                clock.notes.append(f"{_where(curve, end, order)}: no limit found, neither by sympy nor by numbers")
+                continue
+            yield fact
+            if fact.value is not None:  # infinite otherwise: the derivatives that follow are too
+                finite.append((end, side))
+        ends = finite
+
+
+def by_end(facts: Iterable[Fact], low: sp.Expr) -> list[Fact]:
+    """The facts, those of the lower end before those of the upper one, and both before the others."""
+    return sorted(facts, key=lambda fact: 2 if fact.kind not in KINDS else int(fact.place != low))
+
+
+def _at_end(curve: Curve, clock: Clock, end: sp.Expr, side: int, order: int) -> Fact | None:
+    value = None
+    if not _is_infinite(curve, side, order):  # sympy would look long for a limit that is not there
+        value = clock.attempt(lambda: curve.target.derivative(end, order), _where(curve, end, order), LIMIT_SECONDS)
+    if value is None or not agrees(curve, curve.expression(order), end, side, value):
+        return _by_numbers(curve, end, side, order)
+    value = shorter(value, clock)
+    return Fact(KINDS[order], f"{MARKS[order]}({end}) = {value}", condition_at(end, order), SYMBOLIC, end, value)
+
+
+def _where(curve: Curve, end: sp.Expr, order: int) -> str:
+    return f"{MARKS[order]} at {curve.x} = {end}"
 
 
 def condition_at(place: sp.Expr, order: int, equals: sp.Expr | None = None) -> Value | Derivative:

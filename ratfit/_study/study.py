@@ -14,7 +14,7 @@ from ratfit._problem_text import condition_table
 from ratfit._study.clock import FAILURES, Clock
 from ratfit._study.crossings import Scans
 from ratfit._study.curve import Curve
-from ratfit._study.ends import end_facts
+from ratfit._study.ends import by_end, end_facts
 from ratfit._study.equations import equation_facts
 from ratfit._study.fact import Fact, Study
 from ratfit._study.far import far_facts
@@ -47,7 +47,7 @@ def study(target: Target | str | Path, *, timeout: float = 30.0) -> Study:
     for what, part in _parts(curve, clock):
         _collect(facts, what, part, curve, clock)
     notes = [*_first_notes(curve), *dict.fromkeys(clock.notes)]
-    known = Study(target, tuple(facts), tuple(notes))
+    known = Study(target, tuple(by_end(facts, target.domain[0])), tuple(notes))
     return Study(target, known.facts, known.notes, suggested(known, (1 - FIRST_SHARE) * timeout + clock.left()))
 
 

@@ -12,7 +12,9 @@ import sympy as sp
 from ratfit._condition import AbstractCondition, Equation, Integral
 from ratfit._problem_text import condition_table, form_table, write_toml
 from ratfit._study import Fact, Study
+from ratfit._study.curve import Curve
 from ratfit._study.suggestion import offered
+from ratfit.report.parts import LONG, in_parts, where
 
 GROUPS = (
     ("ends", ("value", "slope", "curvature")),
@@ -32,18 +34,23 @@ WIDEST = (50, 40)
 
 LINE = 110
 
+SHOWN = 12
+"""Digits of a number whose closed form is a long one."""
+
 
 def study_text(study: Study) -> str:
     """The facts in groups, each with its option and how it was found; notes; a command that derives a fit."""
     target = study.target
-    lines = [f"study of {target.expression}", "", f"  domain      {target.variable} in {_domain(study)}"]
+    whole, parts = in_parts(target.expression, [target.variable.name])
+    lines = [f"study of {whole}", *(f"  {line}" for line in where(parts))]
+    lines += ["", f"  domain      {target.variable} in {_domain(study)}"]
     lines += [f"  parameters  {', '.join(f'{p} in [{p.low}, {p.high}]' for p in parameters(study))}"] * bool(
         parameters(study)
     )
     for name, kinds in GROUPS:
         facts = study.of(*kinds)
         if facts:
-            lines += ["", f"  {name}", *_columns(facts)]
+            lines += ["", f"  {name}", *_columns(facts, study)]
     if study.notes:
         lines += ["", "  notes", *_notes(study)]
     return "\n".join([*lines, "", *_suggestion_lines(study)])
@@ -67,14 +74,18 @@ def parameters(study: Study) -> list[sp.Symbol]:
     return sorted(symbols - {study.target.variable}, key=lambda s: s.name)
 
 
-def _columns(facts: Iterable[Fact]) -> list[str]:
+def _columns(facts: Iterable[Fact], study: Study) -> list[str]:
     """The facts below each other: text, option, and how it was found; what is too wide has a line of its own."""
-    rows = [(fact.text, option_of(fact), fact.found) for fact in facts]
-    widths = [max((len(row[k]) for row in rows if len(row[k]) <= WIDEST[k]), default=0) for k in range(2)]
+    rows = [(*_readable(fact, study), option_of(fact), fact.found) for fact in facts]
+    texts, options = [row[0] for row in rows], [row[2] for row in rows]
+    widths = [
+        max((len(word) for word in column if len(word) <= widest), default=0)
+        for column, widest in zip((texts, options), WIDEST, strict=True)
+    ]
     lines: list[str] = []
-    for text, option, found in rows:
-        if len(text) > widths[0]:
-            lines.append(f"    {text}")
+    for text, below, option, found in rows:
+        if len(text) > widths[0] or below:
+            lines += [f"    {text}", *(f"      {line}" for line in below)]
             text = "" if widths[0] else "  "
         if len(option) > widths[1]:
             lines.append(f"    {text:<{widths[0]}}  {option}")
@@ -82,6 +93,19 @@ def _columns(facts: Iterable[Fact]) -> list[str]:
         second = f"  {option:<{widths[1]}}" if widths[1] else ""
         lines.append(f"    {text:<{widths[0]}}{second}  {found}")
     return lines
+
+
+def _readable(fact: Fact, study: Study) -> tuple[str, list[str]]:
+    """The text of a fact with a long number in named parts, and these; in digits where parts do not make it short."""
+    if len(fact.text) <= LONG or fact.value is None or str(fact.value) not in fact.text:
+        return fact.text, []
+    whole, parts = in_parts(fact.value, [study.target.variable.name])
+    if max(len(str(each)) for each in (whole, *(part for _, part in parts))) <= LONG:
+        return fact.text.replace(str(fact.value), str(whole)), where(parts)
+    curve = Curve(study.target)
+    digits = f"{sp.N(fact.value.xreplace(curve.middle), SHOWN)}{curve.label}"
+    below = [f"a closed form of {len(str(fact.value))} letters, which --format json writes out"]
+    return fact.text.replace(str(fact.value), digits), below
 
 
 def _suggestion_lines(study: Study) -> list[str]:
@@ -96,8 +120,11 @@ def command_of(study: Study) -> str:
     if problem is None:
         return ""
     form = form_table(problem.form)
-    words = ["ratfit", "derive", quoted(str(target.expression)), "--on", *(quoted(str(end)) for end in target.domain)]
+    whole, parts = in_parts(target.expression, [target.variable.name])
+    words = ["ratfit", "derive", quoted(str(whole)), "--on", *(quoted(str(end)) for end in target.domain)]
     words += ["--variable", str(target.variable)]
+    for name, part in parts:
+        words += ["--let", quoted(f"{name}={part}")]
     for parameter in parameters(study):
         words += ["--parameter", quoted(f"{parameter}={parameter.low}:{parameter.high}")]
     words += ["--form", f"{form['numerator']}/{form['denominator']}"]

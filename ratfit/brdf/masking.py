@@ -13,13 +13,16 @@ surface see there. No exponential magnifies an error here: where it is small it 
 
 from collections.abc import Callable
 
-from sympy import Expr, Integer, Max, Min, Or, Piecewise, Rational, erf, erfc, exp, oo, pi, sqrt
+from sympy import Expr, Integer, Max, Min, Or, Piecewise, Rational, S, erf, erfc, exp, oo, pi, sqrt
 from sympy.logic.boolalg import Boolean
 
 from ratfit.brdf._limits import instead
 
 _FAR = Integer(30)
 """a is held below this: from here on 1 - G and erfc(a) are less than exp(-900), which no double tells from 0."""
+
+WALTER_END, WALTER_END_AS_PRINTED = (1259 - sqrt(1081)) / 792, Rational(8, 5)
+"""Where `beckmann_rational` comes to 1, and where its source puts it there."""
 
 
 def torrance_sparrow(t: Expr, u: Expr, v: Expr, v_prime: Expr) -> Expr:
@@ -111,7 +114,7 @@ def beckmann_rational(v: Expr, alpha: Expr) -> Expr:
     Arguments: v in [-1, 1], alpha the two-dimensional RMS slope.
     Source: walter2007 Eq. 27, microfacet (Beckmann's G1).
     """
-    return _rational(v, alpha, (1259 - sqrt(1081)) / 792)
+    return _rational(v, alpha * _sine(v), WALTER_END)
 
 
 def beckmann_rational_as_printed(v: Expr, alpha: Expr) -> Expr:
@@ -122,7 +125,7 @@ def beckmann_rational_as_printed(v: Expr, alpha: Expr) -> Expr:
     Arguments: v in [-1, 1], alpha the two-dimensional RMS slope.
     Source: walter2007 Eq. 27, microfacet (Beckmann's G1), which lacks the 0 for v <= 0.
     """
-    return _rational(v, alpha, Rational(8, 5))
+    return _rational(v, alpha * _sine(v), WALTER_END_AS_PRINTED)
 
 
 def phong(v: Expr, exponent: Expr) -> Expr:
@@ -133,12 +136,12 @@ def phong(v: Expr, exponent: Expr) -> Expr:
     Arguments: v in [-1, 1], exponent from 0 on, greater for smoother surfaces.
     Source: microfacet (Phong's G1), walter2007.
     """
-    return beckmann_rational(v, sqrt(2 / (exponent + 2)))
+    return _rational(v, _sine(v, 2 / (exponent + 2)), WALTER_END)
 
 
 def phong_as_printed(v: Expr, exponent: Expr) -> Expr:
     """The same with the jump of `beckmann_rational_as_printed`."""
-    return beckmann_rational_as_printed(v, sqrt(2 / (exponent + 2)))
+    return _rational(v, _sine(v, 2 / (exponent + 2)), WALTER_END_AS_PRINTED)
 
 
 def ggx_lambda(v: Expr, alpha: Expr) -> Expr:
@@ -272,13 +275,13 @@ def _held(v: Expr) -> Expr:
     return instead(v, 1, Or(v <= 0, v > 1))
 
 
-def _sine(v: Expr, scale: int = 1) -> Expr:
+def _sine(v: Expr, scale: Expr | int = 1) -> Expr:
     """sqrt(scale) times the sine, 0 from v = 1 on: its slope there is infinite, so the root is not taken of 0.
 
     The scale is put inside the root, where 2 is exact: sqrt(2) is not.
     """
-    oblique = Piecewise((Rational(1, 2), Or(v <= 0, v >= 1)), (v, True))
-    return Piecewise((0, v >= 1), (sqrt((scale - scale * oblique) * (1 + oblique)), True))
+    oblique = instead(v, S.Half, Or(v <= 0, v >= 1))
+    return Piecewise((0, v >= 1), (sqrt(scale * (1 - oblique) * (1 + oblique)), True))
 
 
 def _slope_ratio(v: Expr, spread: Expr) -> Expr:
@@ -304,10 +307,8 @@ def _ggx_parts(v: Expr, alpha: Expr) -> tuple[Expr, Expr, Expr]:
     return p, excess, sqrt(p**2 + excess)
 
 
-def _rational(v: Expr, alpha: Expr, end: Expr) -> Expr:
-    """The fraction of walter2007 Eq. 27 for a < end, 1 from there on."""
-    a = _slope_ratio(v, alpha * _sine(v))
-    numerator = a * (Rational(707, 200) + Rational(2181, 1000) * a)
-    denominator = 1 + a * (Rational(569, 250) + Rational(2577, 1000) * a)
-    ended = Or(v >= 1, end * alpha * sqrt((1 - v) * (1 + v)) <= v)
-    return Piecewise((0, v <= 0), (1, ended), (numerator / denominator, True))
+def _rational(v: Expr, spread: Expr, end: Expr) -> Expr:
+    """The fraction of walter2007 Eq. 27 for a < end, 1 from there on, over 1000/a: constants that no rounding meets."""
+    a = _slope_ratio(v, spread)
+    fraction = (3535 + 2181 * a) / (2276 + 2577 * a + 1000 / a)
+    return Piecewise((0, v <= 0), (1, Or(v >= 1, end * spread <= v)), (fraction, True))

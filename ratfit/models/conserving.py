@@ -14,9 +14,10 @@ What facets hide is given back as kulla2017 do it, (1 - E(v)) (1 - E(v'))/(pi (1
   re-emission (A A'/A_mean + (x + x')^2 B B'/B_mean)/pi comes to A + (x^2 + s) B, with s the mean of x'^2 weighted by
   B' v'; so A is T - s B. What is left is what no square of x says: white surfaces lose at most 5.8 % of the light,
   those without scratches 2.9 %.
-- Of two layers the lower one has what the upper one leaves, on the way in and on the way out: 1 - C of it, for a layer
-  of S(u) = C + (1 - C) (1 - u)^5 reflects no more than C + (1 - C) E(v), E being the `sheen` of a layer with C = 0.
-  The lesser of 1 - E(v) and 1 - E(v') is the share: reciprocal, and what a mirror below a mirror has exactly.
+- Of two layers the lower one has what the upper one leaves, on the way in and on the way out. S(u) is
+  C + (1 - C) (1 - u)^5, so what is left is 1 - C less (1 - C) E(v), E being the `sheen` of a layer with C = 0, and more
+  by what the colour takes from the re-emission. The lesser of what is left at v and at v' is the lower layer's share:
+  reciprocal, and what a mirror below a mirror has exactly.
 
 Multiplied by S(u) <= 1 the facets reflect less; the re-emission is coloured by many reflections of the mean S.
 """
@@ -79,19 +80,25 @@ def many_times(mean: sp.Expr, layer: Layer) -> sp.Expr:
     return mean**2 * (1 - lost) / (1 - mean * lost)
 
 
+def colour(spectral: str, layer: Layer) -> sp.Expr:
+    """What the re-emission is multiplied by: less than 1, and than C + (1 - C)/441."""
+    return many_times(layer.c if spectral == "constant" else layer.c + (1 - layer.c) * MEAN_POWER, layer)
+
+
 def one_layer(spectral: str, layer: Layer) -> sp.Expr:
     """Diffuser, facets with what they hide, and mirror, by the weights of Eq. 33; the mirror is not of the formula."""
-    mean = layer.c if spectral == "constant" else layer.c + (1 - layer.c) * MEAN_POWER
     single = SPECTRAL[spectral][0](U, layer.c) * (weights(layer.r)[0] / sp.pi + facets(layer))
-    return single + many_times(mean, layer) * reemitted(layer)
+    return single + colour(spectral, layer) * reemitted(layer)
 
 
 def left(spectral: str, layer: Layer, v: sp.Expr) -> sp.Expr:
-    """What the layer leaves of light that comes or goes at v, at least, over 1 - C."""
+    """What the layer leaves of light that comes or goes at v, at least."""
+    alpha, (_, b, c) = roughness(layer.r), weights(layer.r)
+    hidden_at_least = b * layer.r / (layer.r + _hidden.ENDS) * _hidden.across(v, alpha, layer.p)
+    taken = hidden_at_least * sp.Max(layer.c - colour(spectral, layer), 0)
     if spectral == "constant":
-        return sp.S.One
-    c = mirror(layer.r)
-    return 1 - c * (1 - v) ** 5 - (1 - c) * _hidden.sheen(v, roughness(layer.r))
+        return 1 - layer.c + taken
+    return (1 - layer.c) * (1 - c * (1 - v) ** 5 - (1 - c) * _hidden.sheen(v, alpha)) + taken
 
 
 def conserving(spectral: str, name: str, *, layers: int = 1) -> Model:
@@ -100,12 +107,14 @@ def conserving(spectral: str, name: str, *, layers: int = 1) -> Model:
     upper, lower = layer("", sp.S.Zero), layer("_prime", sp.S.Zero)
 
     def formula() -> sp.Expr:
-        share = (1 - upper.c) * sp.Min(left(spectral, upper, V), left(spectral, upper, V_PRIME))
-        return one_layer(spectral, upper) + (share * one_layer(spectral, lower) if layers == 2 else 0)
+        if layers == 1:
+            return one_layer(spectral, upper)
+        share = sp.Min(left(spectral, upper, V), left(spectral, upper, V_PRIME))
+        return one_layer(spectral, upper) + share * one_layer(spectral, lower)
 
     def mirrors() -> sp.Expr:
         above, below = (SPECTRAL[spectral][0](V, each.c) * mirror(each.r) for each in (upper, lower))
-        return above + ((1 - upper.c) * left(spectral, upper, V) * below if layers == 2 else 0)
+        return above if layers == 1 else above + left(spectral, upper, V) * below
 
     parameters = (*upper, *lower)[: 3 * layers]
     return Model(

@@ -23,7 +23,7 @@ from ratfit.models._hidden import ENDS, STEEPNESS, Powers
 ALPHA = (0.01, 0.03, 0.06, 0.1, 0.15, 0.22, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.96, 1.0)
 ISOTROPY = (0.001, 0.03, 0.07, 0.13, 0.22, 0.35, 0.5, 0.65, 0.82, 1.0)
 AZIMUTHS = tuple(math.radians(15 * k) for k in range(7))
-COSINES = (*(math.cos(math.pi / 2 * 0.97 * k / 13) for k in range(14)), 0.02, 0.005, 0.0005)
+COSINES = (*(math.cos(math.pi / 2 * 0.97 * k / 13) for k in range(14)), 0.02, 0.005, 0.001, 1e-6)
 
 MARGIN, SHARE = 4e-4, 0.02
 """How far the bounds are kept from: `MARGIN`, or that share of what is hidden, where it is less than that."""

@@ -8,7 +8,6 @@ from scipy.special import erf, erfc
 
 from ratfit._lower import lower
 from ratfit._parse import RatfitError
-from ratfit._target import parameter
 from ratfit.brdf import distribution
 from ratfit.models import LETTERS, MODELS, _schlick, conserving, named
 from ratfit.models.conserving import hidden
@@ -20,7 +19,6 @@ from ratfit.models.schlick import SCHLICK, schlick
 pytestmark = pytest.mark.thorough  # long sweeps of formulas that seldom change
 
 OURS = [*COOK_TORRANCE, *HE, *SCHLICK, *conserving.CONSERVING]
-R = parameter("r", 0, 1)
 NORMAL = np.array([0.0, 0.0, 1.0])
 
 
@@ -380,14 +378,15 @@ def test_other_choices_make_models(masking, fresnel_name):
     assert np.isfinite(found).all() and found.max() > 0
 
 
-@pytest.mark.parametrize(("ours", "theirs"), [
-    (_schlick.zenith(R), distribution.zenith(T, R)),
-    (_schlick.azimuth(R), distribution.azimuth(W, R)),
-    (_schlick.azimuth_as_printed(R), distribution.azimuth_as_printed(W, R)),
-])  # fmt: skip
-def test_schlicks_factors_are_those_of_the_formulas(ours, theirs):
-    x, parameter = np.linspace(0, 1, 21)[:, None], np.array([1e-3, 0.1, 0.5, 1.0])
-    found, expected = (lower(f.xreplace(SQUARES), [T, W, R])(x, x, parameter) for f in (ours, theirs))
+@pytest.mark.parametrize("printed", [False, True])
+def test_schlicks_lobe_is_that_of_the_formulas(printed):
+    layer = _schlick.layer("", 0)
+    ours = _schlick.lobe(layer, printed=printed).value.xreplace(SQUARES)
+    azimuth = distribution.azimuth_as_printed if printed else distribution.azimuth
+    theirs = distribution.zenith(T, layer.r) * azimuth(W, layer.p)
+    t, w = np.linspace(0, 1, 21)[:, None, None], np.linspace(0, 1, 11)[:, None]
+    r, p = np.array([1e-3, 0.1, 0.5, 1.0]), np.array([1.0, 0.4, 1e-3, 0.2])
+    found, expected = (lower(f, [T, W, layer.r, layer.p])(t, w, r, p) for f in (ours, theirs))
     np.testing.assert_allclose(found, expected, rtol=1e-13)
 
 

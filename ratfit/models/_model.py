@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
-from ratfit._lower import lower
+from ratfit._lower import Named, lower
 from ratfit._parse import RatfitError, nearest
 from ratfit._target import Parameter
 from ratfit.models.directions import (
@@ -61,6 +61,16 @@ class Model:
         return self.computed.xreplace(SQUARES)
 
     @cached_property
+    def _program(self) -> tuple[Named, sp.Expr]:
+        """What is divided by and depends on parameters alone, each with a name; the reflectance with these names."""
+        divisors = {
+            power: sp.Dummy()
+            for power in sorted(self.computed.atoms(sp.Pow), key=str)
+            if power.exp.is_negative and power.free_symbols and power.free_symbols <= set(self.parameters)
+        }
+        return tuple((name, power) for power, name in divisors.items()), self.computed.xreplace(divisors)
+
+    @cached_property
     def coherent(self) -> sp.Expr:
         """The share of the mirror, in the cosine v."""
         return _made(self.mirror)
@@ -108,7 +118,8 @@ class Model:
         inside = (v > 0) & (v_prime > 0)
         harmless = (numpy.where(inside, letter, 0.5).astype(letter.dtype) for letter in letters)
         typed = (numpy.asarray(known[p.name], v.dtype) for p in self.parameters)
-        value = lower(self.computed, [*LETTERS, *SQUARES, *self.parameters], backend)(*harmless, *typed)
+        steps, formula = self._program  # a division by parameters is made once, not for every pair
+        value = lower(formula, [*LETTERS, *SQUARES, *self.parameters], backend, steps)(*harmless, *typed)
         return numpy.where(inside, value, 0).astype(value.dtype)
 
     def settings(self, values: Mapping[str, Any]) -> dict[str, Any]:

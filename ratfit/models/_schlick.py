@@ -1,7 +1,8 @@
 """The directional factors of Schlick's model, of one layer.
 
-Z and A are those of `ratfit.brdf.distribution` without the limits at r = 0 and p = 0, where no layer comes: a sum is
-made of as few fractions as it can be, which is what the model costs.
+Z and A are those of `ratfit.brdf.distribution` without the limits at r = 0 and p = 0, where no layer comes. A division
+is what the model costs, so a factor is one fraction, arranged so that float32 holds all of its products: what the
+distribution is below its peak is a number from 1 to 1e30, what the cosines divide by one from 1e-36 to 1.
 """
 
 from __future__ import annotations
@@ -41,10 +42,13 @@ class Layer:
 
 @dataclass(frozen=True)
 class Directional:
-    """A directional factor, right and as printed, the least r it takes, and the share of a mirror that goes with it."""
+    """A directional factor, right and as printed, the least r it takes, and the share of a mirror that goes with it.
 
-    formula: Callable[[Layer], sp.Expr]
-    printed: Callable[[Layer], sp.Expr]
+    The formulas are functions of a layer and of whether the A in print is taken.
+    """
+
+    formula: Callable[[Layer, bool], sp.Expr]
+    printed: Callable[[Layer, bool], sp.Expr]
     source: str
     least: sp.Expr
     mirror: Callable[[sp.Expr], sp.Expr]
@@ -75,30 +79,37 @@ def mirror(r: sp.Expr) -> sp.Expr:
 # --- Z, A and G ---
 
 
-def zenith(r: sp.Expr) -> sp.Expr:
-    """Z = r/(1 + r t^2 - t^2)^2 (schlick1994, Eq. 28), for r > 0."""
-    return r / (r * T**2 + SINE2) ** 2
+@dataclass(frozen=True)
+class Lobe:
+    """A distribution Z A as its peak, of parameters alone, over how far below the peak it is, in the letters."""
+
+    peak: sp.Expr
+    below: sp.Expr
+
+    @property
+    def value(self) -> sp.Expr:
+        return self.peak / self.below
 
 
-def weighted_zenith(r: sp.Expr) -> sp.Expr:
-    """b Z/4 with the b of Eq. 33: finite for every r, and 0 for r = 0."""
-    return (1 - r) * r * zenith(sp.Max(r, NEARLY_MIRROR))
+def lobe(layer: Layer, *, printed: bool = False) -> Lobe:
+    """Z A (schlick1994, Eq. 28), Z = r/(1 + r t^2 - t^2)^2 and A = p/(p^2 - p^2 w^2 + w^2), the A that keeps Eq. 27.
+
+    In print A is the square root of that.
+    """
+    r, p = sp.Max(layer.r, NEARLY_MIRROR), layer.p
+    zenith, azimuth = (T**2 + SINE2 / r) ** 2, 1 - W2 + W2 / p**2
+    return Lobe(1 / (r * sp.sqrt(p)), zenith * sp.sqrt(azimuth)) if printed else Lobe(1 / (r * p), zenith * azimuth)
 
 
-def azimuth(p: sp.Expr) -> sp.Expr:
-    """A = p/(p^2 - p^2 w^2 + w^2), which keeps Eq. 27, for p > 0."""
-    return p / (p**2 * (1 - W2) + W2)
-
-
-def azimuth_as_printed(p: sp.Expr) -> sp.Expr:
-    """A as schlick1994 prints it in Eq. 28: the square root of that which keeps Eq. 27."""
-    return sp.sqrt(azimuth(p))
+def weighted_lobe(layer: Layer, *, printed: bool = False) -> Lobe:
+    """b Z A/4 with the b of Eq. 33: finite for every r, and 0 for r = 0."""
+    whole = lobe(layer, printed=printed)
+    return Lobe((1 - layer.r) * layer.r * whole.peak, whole.below)
 
 
 def distributed(layer: Layer, *, printed: bool = False) -> sp.Expr:
     """Z A/pi, the distribution of the normals of the facets per steradian."""
-    a = azimuth_as_printed if printed else azimuth
-    return zenith(sp.Max(layer.r, NEARLY_MIRROR)) * a(layer.p) / sp.pi
+    return lobe(layer, printed=printed).value / sp.pi
 
 
 def visible(v: sp.Expr, k: sp.Expr) -> sp.Expr:
@@ -113,68 +124,55 @@ def both_visible(k: sp.Expr) -> sp.Expr:
 
 def obstructed(r: sp.Expr) -> sp.Expr:
     """(1 - G(v) G(v')) v v'/(G(v) G(v')), written without the difference."""
-    return r * (SEEN * (1 - LIT) + LIT * (1 - SEEN) + r * (1 - SEEN) * (1 - LIT))
+    return r * (SEEN * (1 - LIT) + (1 - SEEN) * visible(LIT, r))
 
 
 # --- D ---
 
-Azimuth = Callable[[sp.Expr], sp.Expr]
 
-
-def facets(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
+def facets(layer: Layer, printed: bool) -> sp.Expr:
     """Z A/(4 pi v v') (schlick1994, Eq. 25)."""
-    return lambda layer: zenith(layer.r) * a(layer.p) / (4 * sp.pi * SEEN * LIT)
+    return lobe(layer, printed=printed).value / (4 * sp.pi * SEEN * LIT)
 
 
-def reemitted(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
+def reemitted(layer: Layer, printed: bool) -> sp.Expr:
     """(G G' Z A + 1 - G G')/(4 pi v v') (schlick1994, Eq. 30)."""
-
-    def formula(layer: Layer) -> sp.Expr:
-        whole = zenith(layer.r) * a(layer.p) * SEEN * LIT + obstructed(layer.r)
-        return whole / (4 * sp.pi * SEEN * LIT * both_visible(layer.r))
-
-    return formula
+    return _with_obstructed(lobe(layer, printed=printed), layer.r, sp.S.One) / 4
 
 
-def continuum_of_facets(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
+def continuum_of_facets(layer: Layer, printed: bool) -> sp.Expr:
     """a/pi + b times `facets` (schlick1994, Eq. 32 with B = Z A, Eq. 33)."""
-
-    def formula(layer: Layer) -> sp.Expr:
-        lobe = weighted_zenith(layer.r) * a(layer.p)
-        return weights(layer.r)[0] / sp.pi + lobe / (sp.pi * SEEN * LIT)
-
-    return formula
+    return weights(layer.r)[0] / sp.pi + weighted_lobe(layer, printed=printed).value / (sp.pi * SEEN * LIT)
 
 
-def continuum(a: Azimuth = azimuth) -> Callable[[Layer], sp.Expr]:
+def continuum(layer: Layer, printed: bool) -> sp.Expr:
     """a/pi + b times `reemitted` (schlick1994, Eq. 32 with B = G G' Z A + 1 - G G', Eq. 33)."""
-
-    def formula(layer: Layer) -> sp.Expr:
-        diffuse, b, _ = weights(layer.r)
-        whole = weighted_zenith(layer.r) * a(layer.p) * SEEN * LIT + b / 4 * obstructed(layer.r)
-        return diffuse / sp.pi + whole / (sp.pi * SEEN * LIT * both_visible(layer.r))
-
-    return formula
+    diffuse, b, _ = weights(layer.r)
+    return diffuse / sp.pi + _with_obstructed(weighted_lobe(layer, printed=printed), layer.r, b / 4)
 
 
-def twice(right: Callable[[Layer], sp.Expr]) -> Callable[[Layer], sp.Expr]:
+def _with_obstructed(facets: Lobe, r: sp.Expr, weight: sp.Expr) -> sp.Expr:
+    """(G G' B + weight (1 - G G'))/(pi v v') as one fraction, B being the lobe."""
+    whole = facets.peak * SEEN * LIT + weight * obstructed(r) * facets.below
+    return whole / (sp.pi * SEEN * LIT * both_visible(r) * facets.below)
+
+
+def twice(right: Callable[[Layer, bool], sp.Expr]) -> Callable[[Layer, bool], sp.Expr]:
     """Eq. 32 to the letter, its B being "given by" Eq. 25 or 30: what is not a/pi is over 4 pi v v' once more."""
 
-    def formula(layer: Layer) -> sp.Expr:
+    def formula(layer: Layer, printed: bool) -> sp.Expr:
         diffuse = weights(layer.r)[0] / sp.pi
-        once_more = (right(layer) - diffuse) / (4 * sp.pi * SEEN * LIT)
+        once_more = (right(layer, printed) - diffuse) / (4 * sp.pi * SEEN * LIT)
         return diffuse + once_more.xreplace({SEEN: sp.Max(V, LOW_PRINTED), LIT: sp.Max(V_PRIME, LOW_PRINTED)})
 
     return formula
 
 
-PRINTED = azimuth_as_printed
-
 DIRECTIONAL: Mapping[str, Directional] = {
-    "facets": Directional(facets(), facets(PRINTED), "Eq. 25", SMALLEST, no_mirror),
-    "reemitted": Directional(reemitted(), reemitted(PRINTED), "Eq. 30", SMALLEST, no_mirror),
+    "facets": Directional(facets, facets, "Eq. 25", SMALLEST, no_mirror),
+    "reemitted": Directional(reemitted, reemitted, "Eq. 30", SMALLEST, no_mirror),
     "continuum-of-facets": Directional(
-        continuum_of_facets(), twice(continuum_of_facets(PRINTED)), "Eqs. 25, 32, 33", sp.S.Zero, mirror
+        continuum_of_facets, twice(continuum_of_facets), "Eqs. 25, 32, 33", sp.S.Zero, mirror
     ),
-    "continuum": Directional(continuum(), twice(continuum(PRINTED)), "Eqs. 30, 32, 33", sp.S.Zero, mirror),
+    "continuum": Directional(continuum, twice(continuum), "Eqs. 30, 32, 33", sp.S.Zero, mirror),
 }

@@ -64,7 +64,7 @@ def schlick(
     return Model(
         name or f"schlick({spectral}, {directional}, {layers})",
         f"Schlick's {'one layer' if layers == 1 else 'two layers'}: {spectral}, {directional}",
-        lambda: layered([s(U, each.c) for each in materials], [formula(each) for each in materials]),
+        lambda: layered([s(U, each.c) for each in materials], [formula(each, printed) for each in materials]),
         parameters,
         f"schlick1994, Eq. 22, {where}, {factor.source}",
         dict(zip([p.name for p in parameters], DEFAULTS[0] + DEFAULTS[1], strict=False)),

@@ -86,7 +86,7 @@ def _unrun(cell: NotebookNode) -> dict[str, object]:
 def tidied(notebook: NotebookNode) -> NotebookNode:
     """What is saved of an executed notebook: the kernel's own metadata (a version, a mode of an editor) is left out.
 
-    Of a picture its words stay, which a page shows to those who do not see it.
+    Of a picture its words stay, under the key of IPython's own images, for those who do not see it.
 
     What a cell prints in pieces becomes one piece: where it was cut depends on the kernel's clock.
     """

@@ -14,7 +14,7 @@ from ratfit.brdf import distribution
 from ratfit.models import MODELS, Model
 from ratfit.models.albedo import Albedo, angles
 from ratfit.models.check import check
-from ratfit.models.directions import V_PRIME, T, U, V, W
+from ratfit.models.directions import SINE2, V_PRIME, T, U, V, W, cosines
 from ratfit.models.laws import FAILS, HOLDS, NOT_APPLICABLE, UNDECIDED
 from ratfit.models.laws.drawing import agreement, sampling
 from ratfit.models.laws.energy import Brightest, brightest, energy
@@ -160,12 +160,30 @@ def test_limits(reflectance, remark):
     [
         (1 / sp.pi, HOLDS),
         (distribution.ggx(T, sp.Rational(3, 10)), HOLDS),
-        (distribution.ggx(T, sp.Rational(1, 10_000)), FAILS),  # 1 - t is nothing in float32 across the lobe
+        (distribution.ggx(T, sp.Rational(1, 10_000)), FAILS),  # 1 - t is nothing in float32 across the lobe,
+        (distribution.ggx(T, sp.Rational(1, 10_000), SINE2), HOLDS),  # 1 - t^2 has all its digits
         (1 + sp.sin(10**8 * U), FAILS),
     ],
 )
 def test_float32(reflectance, verdict):
     assert single(own(reflectance), {}, 0).verdict == verdict
+
+
+@pytest.mark.parametrize(("name", "fixed"), [
+    ("schlick", {"r": 1e-11}), ("schlick-conserving", {"r": 1e-9, "p": 0.01}), ("smoothie", {"roughness": 0.01}),
+    ("cook-torrance-ggx", {"alpha": 0.01}), ("ward", {"m": 0.01, "n": 0.01}),
+])  # fmt: skip
+def test_narrow_lobes_keep_their_digits_in_float32(name, fixed):
+    """A hundredth would do for the law; the sine of H as a letter makes it less than 2e-4."""
+    assert single(MODELS[name], fixed, 0).found < 2e-4
+
+
+def test_the_squares_are_right_where_the_cosines_have_no_digits():
+    """H at an angle of 1e-5 from N in float32: 1 - t^2 = 1e-10 is below the last digit of t."""
+    angle, view = np.float32(2e-5), np.array([0, 0, 1], np.float32)
+    light = np.array([0.6 * angle, 0.8 * angle, 1], np.float32)
+    t, *_, sine2, w2 = cosines(view, light)
+    assert t == 1 and sine2 == pytest.approx(1e-10, rel=1e-6) and w2 == pytest.approx(0.36, rel=1e-6)
 
 
 def test_settings_hold_the_ends_and_keep_what_is_fixed():

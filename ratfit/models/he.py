@@ -3,8 +3,13 @@
 schlick1994 (Eq. 9) gives the structure and leaves the factors to he1991, whose roughness attenuation coefficient is
 A = exp(-g), g = (2 pi (v + v') sigma)^2, with sigma the RMS height over the wavelength: how much of the light the
 surface is smooth for. There the distribution D is a sum of lobes whose weights g^n exp(-g)/n!, n >= 1, add up to 1 - A.
-Here one lobe stands for them, of whatever D: it has the weight 1 - A in `he`, so that both reflections share the light,
-and the weight 1 in `he-as-printed`, where D keeps Eq. 5 as schlick1994 asks, so that a smooth surface reflects twice.
+Here one lobe stands for them, of whatever D. In `he-as-printed` its weight is 1, for D keeps Eq. 5 as schlick1994 asks,
+so that a smooth surface reflects twice. In `he` both reflections share the light: the weight is 1 - A where v' = v, as
+for the mirror, and elsewhere the 1 - A of the lower of the two directions, exp(-(4 pi min(v, v') sigma)^2). With
+1 - A(v, v') the two were more than the light: the mirror has A(v, v) of it, and light that comes in at a grazing angle
+is scattered upwards, where A(v, v') is less than A(v, v); heights of a sixth of the wavelength, alpha = 0.1 and total
+reflection came to 1.03 at 78 degrees. The weight is nowhere above 1 - A(v, v) now, facets with Smith's masking reflect
+no more than they receive, and so the whole does not.
 """
 
 from __future__ import annotations
@@ -20,6 +25,9 @@ from ratfit.models.directions import V_PRIME, V
 
 SIGMA = parameter("sigma", 0, 10)
 """The RMS height of the surface over the wavelength."""
+
+LOWER = sp.Min(V, V_PRIME)
+"""The cosine of the direction that is nearer to the horizon."""
 
 PARAMETERS = (ALPHA, ETA, KAPPA, SIGMA, DIFFUSE, SHARE)
 
@@ -65,6 +73,6 @@ def he(weight: sp.Expr, name: str, title: str) -> Model:
 
 
 HE: tuple[Model, ...] = (
-    he(attenuated(V, V_PRIME, SIGMA), "he", "The structure of He et al., coherent and incoherent sharing the light"),
+    he(attenuated(LOWER, LOWER, SIGMA), "he", "The structure of He et al., coherent and incoherent sharing the light"),
     he(sp.S.One, "he-as-printed", "The structure of He et al., the incoherent lobe in full"),
 )

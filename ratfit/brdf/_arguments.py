@@ -6,12 +6,11 @@ expression that looks right. They are refused where they come in.
 
 import functools
 import inspect
-import math
 from collections.abc import Callable
 from numbers import Real
 from typing import ParamSpec
 
-from sympy import Expr, S, oo
+from sympy import Expr, Float, S, oo
 
 from ratfit._parse import RatfitError
 
@@ -52,14 +51,14 @@ def takes(**ranges: Range) -> Callable[[Callable[Formula, Expr]], Callable[Formu
 def _check(what: str, value: object, within: Range | None) -> None:
     if isinstance(value, bool) or not isinstance(value, Expr | Real):
         raise RatfitError(
-            f"{what} is a {type(value).__name__}: give a symbol, a sympy expression or a number; for arrays, lower the "
+            f"{what} has the type {type(value).__name__}: give a symbol, a sympy expression or a number; for arrays, lower the "
             "formula with ratfit.lower and give the arrays to that"
         )
-    if isinstance(value, Expr) and value.free_symbols:
+    number = value if isinstance(value, Expr) else Float(float(value))
+    if number.free_symbols:
         return
-    if value is S.NaN or (isinstance(value, Expr) and value.is_extended_real is False) or value != value:
+    if number.is_extended_real is False or number is S.NaN:
         raise RatfitError(f"{what} is {value}: give a real number")
-    if within is not None and ((value < within[0]) == True or (value > within[1]) == True):  # noqa: E712
-        low, high = within
-        asked = f"{low} or more" if math.isinf(high) else f"a number from {low} to {high}"
+    if within is not None and S.true in (number < within[0], number > within[1]):
+        asked = f"{within[0]} or more" if within[1] is oo else f"a number from {within[0]} to {within[1]}"
         raise RatfitError(f"{what} is {value}: give {asked}")

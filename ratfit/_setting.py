@@ -108,6 +108,8 @@ def setting(
 
 def _interval(domain: tuple[float, ...], within: tuple[float, float] | None) -> tuple[float, float]:
     low, high = within or domain
+    if within and low >= high:
+        raise RatfitError(f"[{low}, {high}] is empty or reversed: measure within low < high, as in --within 0 9")
     if not -math.inf < low < high < math.inf:
         where = "this part of it" if within else "the domain"
         raise RatfitError(

@@ -49,8 +49,8 @@ def derive(problem: tuple[str, ...], degree: int | None, settings: tuple[str, ..
     check_places(options["out"], options["plot"])
     if options["reference"] and options["plot"] is None:
         raise RatfitError("--reference says what a picture compares with: give --plot FILE too")
-    found, shown = read_problem(problem, degree, options)
     values = settings_of(settings)
+    found, shown = read_problem(problem, degree, options)
     _check_reference(found, options["reference"], values)
     there = _with_settings(found, values)
     if there.parameters != found.parameters:

@@ -50,7 +50,9 @@ measure_options = together(
         help="Protocol: uniform (the default), angle, cosine, in-plane, hemisphere (that of a model), sobol.",
     ),
     click.option("--exhaustive", is_flag=True, help="Every number of --dtype in the domain, its ends included."),
-    click.option("--dtype", default="float32", show_default=True, metavar="float16|32|64", help="Type under test."),
+    click.option(
+        "--dtype", default="float32", show_default=True, metavar="float16|float32|float64", help="Type under test."
+    ),
     click.option(
         "--backend",
         "backends",

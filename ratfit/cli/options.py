@@ -101,8 +101,10 @@ problem_options = together(
 
 def read_problem(problem: tuple[str, ...], degree: int | None, words: dict[str, Any]) -> tuple[Problem, Card | None]:
     """The problem that the words of a command name, and its card where it is one of the gallery."""
-    text = one_word(problem)
     stated = stated_words(words)
+    for option in ("on", "support", "within"):
+        check_pair(option, words.get(option))
+    text = one_word(problem)
     if is_known(text):
         if stated.given():
             raise RatfitError(f"--{stated.given()[0]} completes an expression; {text} is a whole problem, leave it out")
@@ -119,6 +121,12 @@ def read_problem(problem: tuple[str, ...], degree: int | None, words: dict[str, 
     return problem_of_words(text, stated), None
 
 
+def check_pair(option: str, ends: tuple[str, str] | None) -> None:
+    """Two ends in one word, as 0,1, take the next option for the second: RatfitError says how they are written."""
+    if ends and ends[1].startswith("--"):
+        raise RatfitError(f"--{option} takes two words, the ends, as in --{option} 0 pi/2; there is {ends[0]!r} alone")
+
+
 def stated_words(options: dict[str, Any]) -> Words:
     """What the options say of a problem that is an expression."""
     return Words(**{k: options[k] for k in Words.__dataclass_fields__ if k in options})
@@ -133,7 +141,8 @@ def one_word(problem: tuple[str, ...]) -> str:
                 f"there is no option {word.split('=')[0]}{nearest(word.split('=')[0], options)}; see --help"
             )
     if not problem or problem == ("",):
-        raise RatfitError("which problem? give a gallery name, a file or an expression, as in `ratfit derive eq19`")
+        command = click.get_current_context().info_name
+        raise RatfitError(f"which problem? give a gallery name, a file or an expression, as in `ratfit {command} eq19`")
     if len(problem) > 1:
         raise RatfitError(f"one problem at a time: {problem[1]!r} is one too many; put an expression in quotes")
     return problem[0]

@@ -9,7 +9,7 @@ import click
 from ratfit._inline import Words, target_of_words
 from ratfit._parse import RatfitError
 from ratfit._target import Target
-from ratfit.cli.options import WORDS, check_places, one_word, positive, write
+from ratfit.cli.options import WORDS, check_pair, check_places, one_word, positive, write
 from ratfit.gallery import card, find_problem, is_known
 from ratfit.plot.write import write_picture
 from ratfit.report.progress import waiting
@@ -57,6 +57,7 @@ def _read_target(words: tuple[str, ...], options: dict[str, Any]) -> Target:
     """The target that the words of `study` name: of a card, of a file, or an expression with its domain."""
     from ratfit._study.study import target_of
 
+    check_pair("on", options["on"])
     text = one_word(words)
     stated = Words(**{k: options[k] for k in ("on", "variable", "parameter", "let")})
     if is_known(text) and stated.given():

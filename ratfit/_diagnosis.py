@@ -211,9 +211,9 @@ def _completing(system: System, names: Sequence[str]) -> list[str]:
             chosen.append(option(condition))
     if not chosen:
         return []
-    more = "a further condition leaves" if len(names) == 1 else f"{len(names)} further conditions leave"
+    leave = "a further condition leaves" if len(names) == 1 else f"{len(names)} further conditions leave"
     values = " ".join(f"--set {name}=..." for name in names)
-    return [f"{', '.join(names)} free: {more} one fit, such as {' '.join(chosen)}; or choose: {values}"]
+    return [f"{', '.join(names)} free: {leave} one fit, such as {' '.join(chosen)}; or choose: {values}"]
 
 
 def _further(system: System) -> Iterator[AbstractCondition]:

@@ -167,13 +167,13 @@ def _parameter(text: str) -> tuple[str, list[str]]:
 
 
 def settings_of(texts: Sequence[str], *words: str) -> dict[str, str]:
-    """Names and values from --set options, as in n=6; `words` may stand in place of a number.
+    """Names and values from --set options, as in n=1/3; `words` may stand in place of a number.
 
     **Fails** with `RatfitError` for a value that holds other names, and for a name that is set twice.
     """
     found: dict[str, str] = {}
     for text in texts:
-        name, value = _pair(text, "--set", "n=6")
+        name, value = _pair(text, "--set", f"{text.strip() if text.strip().isidentifier() else 'n'}=1/3")
         if name in found:
             raise RatfitError(f"--set {text}: {name} is set twice; leave one out")
         if value not in words and (unknown := set(_NAME.findall(value)) - RESERVED):

@@ -5,11 +5,19 @@ eta >= 0 is the refraction index and kappa >= 0 the extinction coefficient, both
 comes from, which is transparent: eta < 1 where that is the denser one. f in [0, 1] is F(1), `normal(eta, kappa)`.
 Every F lies in [0, 1], but for the printed formulas that are kept because they are wrong.
 
-Accuracy in float64, measured on a million places of each kind: every F in [0, 1] is within 4 ulp of 1, 9e-16, of its
-value. In ulp of F itself a metal's is within 4 at 99.9 places of 100 and within 8 at all; that of glass is the square
-of a small difference, within 4 at 97 places of 100 and within 14 at all. Both hold away from the critical angle, where
-|w| of `conductor` is above 0.45. An exponential adds the error of its argument: for f = 0, 5 ulp in
-`spherical_gaussian`, 13 in `karis` and `smoothie`; for f >= 0.01, 4 and 6.
+Accuracy in float64, in ulp of F itself, on two million places u in [0, 1] of each kind, away from the critical angle
+(|w| of `conductor` above 0.45; nearly no surface: u > 0.01): how often F is within 4, and the most.
+
+    metals, eta in [0.02, 10] and kappa in [1, 20]               99.999 %    4.7
+    eta in [1.5, 6] and kappa in [0.01, 1]                       99.995 %    5.4
+    glass, eta in [1.05, 10]: `dielectric` and `conductor`       99.997 %    5.6
+    glass from its inside, eta in [0.5, 0.95]                    99.991 %    5.3
+    nearly no surface, eta - 1 < 0.05 and kappa < 0.001          99.7 %      7.7
+    eta < 1 and kappa < 1                                        99.97 %     8.5
+
+What is left above 4 is no rounding magnified: a dozen of half an ulp each that happen to add up. `lazanyi`, `index`,
+`spectral` and `schlick` are within 4, `normal` within 4.4. An exponential adds the error of its argument: for f = 0,
+5 ulp in `spherical_gaussian`, 14 in `karis` and `smoothie`; for f >= 0.01, 4 and 5.
 """
 
 from __future__ import annotations
@@ -148,7 +156,8 @@ def schlick_as_printed(u: Expr, f: Expr) -> Expr:
 @takes(eta=FROM_ZERO, kappa=FROM_ZERO)
 def lazanyi(u: Expr, eta: Expr, kappa: Expr) -> Expr:
     """`schlick` with f of a complex index, over one denominator (lazanyi2005, without its correction term)."""
-    return ((eta - 1) ** 2 + kappa**2 + 4 * eta * (1 - u) ** 5) / ((eta + 1) ** 2 + kappa**2)
+    least = (eta - 1) ** 2 + kappa**2
+    return (least + 4 * eta * (1 - u) ** 5) / (least + 4 * eta)
 
 
 @takes(f=UNIT)
@@ -175,13 +184,14 @@ def smoothie(u: Expr, f: Expr, a: Expr = SMOOTHIE_A, b: Expr = SMOOTHIE_B) -> Ex
 @takes(eta=FROM_ZERO, kappa=FROM_ZERO)
 def normal(eta: Expr, kappa: Expr = S.Zero) -> Expr:
     """F(1), the reflectance at normal incidence; 1/eta has the same as eta where kappa = 0."""
-    return ((eta - 1) ** 2 + kappa**2) / ((eta + 1) ** 2 + kappa**2)
+    least = (eta - 1) ** 2 + kappa**2
+    return least / (least + 4 * eta)  # 4 eta is exact, |n + 1|**2 takes one rounding more
 
 
 @takes(f=UNIT)
 def index(f: Expr) -> Expr:
     """The index eta >= 1 of the dielectric with the normal reflectance f (cook1981): f in [0, 1), infinite at 1."""
-    return (1 + sqrt(f)) / (1 - sqrt(f))
+    return (1 + 2 * sqrt(f) + f) / (1 - f)  # 1 - sqrt(f) would cancel
 
 
 def _from_zero(rise: Expr) -> Expr:

@@ -28,6 +28,12 @@ def cosine(a):
     return a / sp.sqrt(1 + a**2)
 
 
+def ward_of_slope(s):
+    """Ward's lobe over its peak, at the slope s/5 along a tangent with the roughness 1/5."""
+    t, m = 1 / sp.sqrt(1 + s**2 / 25), sp.Rational(1, 5)
+    return sp.pi * m**2 * t**4 * distribution.ward(t, sp.S.One, m, m)
+
+
 # name of the card, which of its functions (None: the target, "": the published one, else a reference), the exact
 # factor of the variable and of parameters in the order given, their values
 FACTORS = [
@@ -38,6 +44,7 @@ FACTORS = [
     ("beckmann-quartic", None, lambda t, m: sp.pi * distribution.beckmann(t, m), {"m": "1/3"}),
     ("beckmann-masking", None, lambda a: masking.beckmann(cosine(a), sp.S.One), {}),
     ("beckmann-masking", "walter-2007-rational", lambda a: masking.beckmann_rational(cosine(a), sp.S.One), {}),
+    ("beckmann-lambda", None, lambda a: masking.beckmann_lambda(cosine(a), sp.S.One), {}),
     ("conductor", None, fresnel.conductor, GOLD),
     ("conductor", None, fresnel.conductor, {"eta": "2.94", "kappa": "2.99"}),
     ("conductor", "", lambda u, eta, kappa, n: fresnel.lazanyi(u, eta, kappa), GOLD | {"n": "5"}),
@@ -48,12 +55,18 @@ FACTORS = [
     ("fresnel", "gold", lambda u: fresnel.conductor(u, sp.Rational("0.29"), sp.Rational("2.863")), {}),
     ("ggx-masking", None, masking.ggx, {"alpha": "1/3"}),
     ("ggx-masking-ends", None, masking.ggx, {"alpha": "1/3"}),
+    ("ggx", None, distribution.ggx, {"alpha": "1/3"}),
+    ("ggx-lambda", None, masking.ggx_lambda, {"alpha": "1/3"}),
+    ("ggx-correlated", None, lambda v, alpha: masking.ggx_correlated(v, v, alpha), {"alpha": "1/3"}),
+    ("grooves", None, lambda v, k: masking.torrance_sparrow(sp.S.One, 2 / k, v, sp.S.One), {"k": "5/2"}),
     ("phong-density", None, distribution.phong, {"n": "7"}),
     ("smith", None, masking.smith_as_printed, {"m": "1/5"}),
     ("smith", "", masking.schlick, {"m": "1/5"}),
+    ("schlick-masking", None, masking.schlick_roughness, {"r": "1/5"}),
     ("smith", "smith-1967", masking.smith, {"m": "1/5"}),
     ("smith", "walter-2007", lambda v, m: masking.beckmann(v, sp.sqrt(2) * m), {"m": "1/5"}),
     ("smith-1967", None, lambda a: masking.smith(cosine(a), 1 / sp.sqrt(2)), {}),
+    ("ward", None, ward_of_slope, {}),
     ("zenith", "", distribution.zenith, {"r": "1/5"}),
     ("zenith", "beckmann", lambda t, r: sp.pi * distribution.beckmann(t, sp.sqrt(r)), {"r": "1/5"}),
 ]
@@ -138,7 +151,13 @@ NOTED = [
     ("ggx-masking", {"alpha": 0.05}, (0, 1), 0.15),
     ("ggx-masking", {"alpha": 0.5}, (0, 1), 0.066),
     ("ggx-masking-ends", {"alpha": 0.05}, (0, 1), 0.025),
+    ("ggx-correlated", {"alpha": 0.05}, (0, 1), 0.037),
+    ("ggx-correlated", {"alpha": 0.5}, (0, 1), 0.0064),
+    ("ggx", {"alpha": 0.05}, (0, 1), 0.0),
+    ("schlick-masking", {"r": 0.2}, (0, 1), 0.0),
+    ("grooves", {"k": 2.5}, (0, 1), 0.0),
     ("beckmann-masking", {}, (0, 6), 0.0047),
+    ("ward", {}, (0, 6), 0.095),
     ("smith-1967", {}, (0, 6), 0.0065),
     ("conductor", {"eta": 0.29, "kappa": 2.863}, (0, 1), 0.019),
     ("conductor", {"eta": 0.70, "kappa": 2.704}, (0, 1), 0.031),
@@ -157,6 +176,30 @@ def test_a_fit_is_as_near_as_its_card_notes(name, values, part, distance):
     exact = rf.lower(problem.target.expression, symbols)(x, *(values[s.name] for s in problem.parameters))
     error = np.max(np.abs(derived(name)(x, **values) - exact)) / np.max(exact)
     assert float(f"{error:.2g}") == pytest.approx(distance, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "name, values, part, distance",
+    [
+        ("ggx-lambda", {"alpha": 0.05}, (0, 1), 0.025),
+        ("ggx-lambda", {"alpha": 0.5}, (0, 1), 0.0048),
+        ("beckmann-lambda", {}, (0, 6), 0.0081),
+    ],
+)
+def test_a_lambda_is_as_near_as_its_card_notes(name, values, part, distance):
+    """In what is made of it, 1/(1 + Lambda): it has no peak of its own."""
+    problem = card(name).problem
+    x = np.linspace(*part, 5003)[1:-1]
+    exact = rf.lower(problem.target.expression, [problem.variable, *problem.parameters])(x, *values.values())
+    error = np.max(np.abs(1 / (1 + derived(name)(x, **values)) - 1 / (1 + exact)))
+    assert float(f"{error:.2g}") == distance
+
+
+def test_the_way_out_is_the_way_in_seen_from_the_other_side():
+    """Total reflection needs no card: at eta < 1 F(u) is that of 1/eta at the other side's cosine."""
+    eta, u = sp.Rational(2, 3), sp.Rational(9, 10)
+    other = sp.sqrt(1 - (1 - u**2) / eta**2)
+    assert abs(sp.N(fresnel.dielectric(u, eta) - fresnel.dielectric(other, 1 / eta), 30)) < 1e-25
 
 
 @pytest.mark.parametrize("name", ["beckmann-masking", "smith-1967"])

@@ -20,7 +20,10 @@ SECTIONS = {re.search(r"`brdf\.(\w+)`", part)[1]: part for part in PAGE.read_tex
 def test_the_tables_name_functions_with_their_arguments(module):
     for name, arguments in re.findall(r"`(\w+)\(([^`]*)\)`", SECTIONS[module]):
         function = getattr(getattr(brdf, module), name)
-        assert [*inspect.signature(function).parameters] == arguments.split(", "), name
+        known = inspect.signature(function).parameters
+        needed = [each.name for each in known.values() if each.default is inspect.Parameter.empty]
+        said = arguments.split(", ")
+        assert said == [*known][: len(said)] and len(said) >= len(needed), name
 
 
 @pytest.mark.parametrize("module", ["fresnel", "distribution", "masking"])

@@ -12,6 +12,12 @@ import pytest
 import sympy as sp
 
 import ratfit as rf
+from ratfit._study.clock import Clock
+from ratfit._study.crossings import Scans
+from ratfit._study.curve import Curve
+from ratfit._study.ends import end_facts
+from ratfit._study.moments import moment_facts
+from ratfit._study.poles import pole_facts
 from ratfit.brdf import distribution, fresnel, masking
 from ratfit.gallery import card
 
@@ -200,6 +206,30 @@ def test_the_way_out_is_the_way_in_seen_from_the_other_side():
     eta, u = sp.Rational(2, 3), sp.Rational(9, 10)
     other = sp.sqrt(1 - (1 - u**2) / eta**2)
     assert abs(sp.N(fresnel.dielectric(u, eta) - fresnel.dielectric(other, 1 / eta), 30)) < 1e-25
+
+
+def told(condition):
+    """A condition without the number that it asks for, and at the place as it is written."""
+    return replace(condition, equals=None)
+
+
+@pytest.mark.parametrize(
+    "name, others",
+    [
+        *(("ggx", 0), ("ggx-lambda", 0), ("ggx-correlated", 0), ("ggx-masking-ends", 0), ("schlick-masking", 0)),
+        *(("grooves", 0), ("ward", 0), ("dielectric", 0), ("beckmann-lambda", 2), ("beckmann-masking", 2)),
+        ("phong-density", 1),
+    ],
+)
+def test_the_conditions_of_a_card_are_those_that_a_study_proposes(name, others):
+    """All but those at the end of a support, which are chosen, and a weight of 2*pi*t, which is one of t."""
+    problem = card(name).problem
+    curve, clock = Curve(problem.target), Clock(1000)
+    facts = [*end_facts(curve, clock), *pole_facts(Scans(curve, clock))]
+    if name == "ward":
+        facts += moment_facts(Scans(curve, clock))
+    proposed = {told(fact.condition) for fact in facts if fact.condition is not None and fact.found == "symbolic"}
+    assert len([c for c in problem.conditions if told(c) not in proposed]) == others
 
 
 @pytest.mark.parametrize("name", ["beckmann-masking", "smith-1967"])

@@ -265,6 +265,22 @@ def test_plot_draws_on_the_axes_given_and_shows_nothing():
     assert "cut" in cut.get_xlabel()
 
 
+@pytest.mark.parametrize(
+    "case, constant",
+    [
+        (("1/(x-1/2)+x", "0", "1"), "1/2"),
+        (("1/tan(x)+2/(exp(x)-1)", "0", "1"), "-1"),  # 1/x - x/3 and 2/x - 1 + x/6
+        (("(1+k*x)/x", "0", "1", "k=1:2"), "k"),
+    ],
+)
+def test_what_is_left_behind_a_simple_pole(case, constant):
+    (fact,) = studied(*case).of("remainder")
+    assert str(fact.value) == constant and fact.condition.equals == fact.value
+    data = json.loads(study_json(studied(*case)))
+    assert any("minus=" in (each["option"] or "") for each in data["facts"] if each["kind"] == "remainder")
+    assert "minus" in study_toml(studied(*case))
+
+
 def test_nested_time_limits_neither_hang_nor_stay_behind():
     """An outer limit that strikes while an inner one starts once struck the inner's newborn thread."""
     import threading

@@ -1,4 +1,4 @@
-"""Poles in the closed domain: order, and the coefficient that a Limit keeps."""
+"""Poles in the closed domain: order, the coefficient that a Limit keeps, and the constant behind a simple one."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ def pole_facts(scans: Scans) -> Iterator[Fact]:
         if exponent is None or exponent >= 0 or any(abs(place - other) < mpmath.mpf("1e-30") for other in seen):
             continue
         seen.append(place)
-        yield _pole(scans, place, closed, -exponent)
+        pole = _pole(scans, place, closed, -exponent)
+        yield pole
+        if exponent == -1 and isinstance(pole.condition, Limit):
+            yield from _behind(scans, pole.condition)
 
 
 def _ends(curve: Curve) -> Iterator[tuple[mpmath.mpf, sp.Expr | None, int]]:
@@ -60,3 +63,19 @@ def _pole(scans: Scans, place: mpmath.mpf, closed: sp.Expr | None, order: sp.Rat
     condition = Limit(closed, scale=scale, equals=coefficient)
     text = f"{kind} of order {order} at {closed}: {condition.what} -> {coefficient}"
     return Fact(kind, text, condition, SYMBOLIC, closed, coefficient)
+
+
+def _behind(scans: Scans, pole: Limit) -> Iterator[Fact]:
+    """The constant that a simple pole leaves where it is taken away."""
+    curve, clock, at = scans.curve, scans.clock, pole.at
+    assert pole.equals is not None
+    minus = pole.equals / (curve.x - at)
+    constant = clock.attempt(lambda: curve.target.limit(at, sp.S.One, minus), seconds=1.5)
+    side = -1 if at == curve.target.domain[1] else 1
+    if constant is None or not agrees(curve, curve.target.expression - minus, at, side, constant):
+        return
+    constant = shorter(constant, clock)
+    condition = Limit(at, minus=minus, equals=constant)
+    yield Fact(
+        "remainder", f"behind the pole at {at}: {condition.what} -> {constant}", condition, SYMBOLIC, at, constant
+    )

@@ -126,6 +126,12 @@ def offered(study: Study) -> tuple[AbstractCondition, ...]:
     for fact in study.facts:
         condition = fact.condition
         if condition is not None:
-            key = (*_key(condition), condition.weight) if isinstance(condition, Integral) else _key(condition)
-            found.setdefault(key, condition)
+            found.setdefault((*_key(condition), *_more_of(condition)), condition)
     return tuple(found.values())
+
+
+def _more_of(condition: AbstractCondition) -> tuple[sp.Expr, ...]:
+    """What tells conditions apart that differ in more than their place: moments, and the terms of a pole."""
+    if isinstance(condition, Integral):
+        return (condition.weight,)
+    return (condition.minus,) if isinstance(condition, Limit) and not condition.at.is_infinite else ()

@@ -20,7 +20,7 @@ GROUPS = (
     ("ends", ("value", "slope", "curvature")),
     ("far out", ("limit", "decay", "growth", "asymptote")),
     ("zeros", ("zero",)),
-    ("poles", ("pole", "singularity")),
+    ("poles", ("pole", "singularity", "remainder")),
     ("extrema", ("maximum", "minimum")),
     ("inflections", ("inflection",)),
     ("symmetry", ("parity", "reflection")),

@@ -4,15 +4,18 @@ n = eta + i kappa is the index, u the cosine, s**2 = 1 - u**2, and w = a + i b t
 amplitudes of the two polarisations are (u - w)/(u + w) and (n**2 u - w)/(n**2 u + w), F is the mean of their squares.
 Over one denominator, with v = w + n u:
 
-    F = R/(R + T)     R = |n - 1|**2 (1 + x)     x = (s**2/(u |w|))**2
-    T = 4 eta + 2 u x Z/|n + 1|**2     Z = Re(conj(1 + n**2) conj(w) g**2) - 4 u Im(conj(n) g)**2     g = (n**2 - 1)/v
+    F = R/(R + T)     R = |n - 1|**2 (1 + x)     x = (s**2/(u |w|))**2     T = 4 eta + 2 u x Z
+    Z = (1 + |n|**2) a |n - 1|**2/|w + n u|**2 + 2 k ((eta**2 - j) (q + u**2)/(a + eta u) - 2 u j (eta + 1))/|n + 1|**2
+
+with k = kappa**2/(a**2 + kappa**2) and j = 1 - k. By complex numbers Z |n + 1|**2 is shorter and dearer, the real part of
+conj(1 + n**2) conj(w) g**2 less 4 u Im(conj(n) g)**2, with g = (n**2 - 1)/(w + n u).
 
 T is also 2 a (q (q + 2) + u**2 (|n|**4 + s**2) + 4 u a (q + s**2))/(u q |n + 1|**2), a sum of positive terms, which has
 more roundings; Z may be negative where the light hardly enters (total reflection: T = 0), and there that sum is used.
 R and T are both taken times u**2 where u is below 1/2, so that nothing is infinite at u = 0.
 """
 
-from sympy import Expr, Piecewise, S, sqrt
+from sympy import Expr, Min, Piecewise, S, sqrt
 
 from ratfit.brdf._limits import instead
 
@@ -43,18 +46,13 @@ def root(p: Expr, q: Expr, product: Expr) -> tuple[Expr, Expr]:
     return Piecewise((greater, steep), (lesser, True)), Piecewise((lesser, steep), (greater, True))
 
 
-def oblique(u: Expr, eta: Expr, kappa: Expr, a: Expr, b: Expr) -> Expr:
-    """2 u Z/|n + 1|**2, by real numbers, g = (real + i imaginary)/|v|**2."""
-    along, across = a + eta * u, b + kappa * u
-    first, second = excess(eta) - kappa**2, 2 * eta * kappa  # n**2 - 1
-    real, imaginary = first * along + second * across, second * along - first * across
-    mean = (2 + first) * a - second * b, (2 + first) * b + second * a  # conj(1 + n**2) conj(w) = mean - i mean'
-    z = (
-        mean[0] * (real - imaginary) * (real + imaginary)
-        + 2 * mean[1] * real * imaginary
-        - 4 * u * (eta * imaginary - kappa * real) ** 2
-    )
-    return 2 * u * z / (((eta + 1) ** 2 + kappa**2) * (along**2 + across**2) ** 2)
+def oblique(u: Expr, eta: Expr, kappa: Expr, a: Expr, b: Expr, q: Expr) -> Expr:
+    """Z, for a > 0; its second part vanishes with kappa. The minimum with 1 changes nothing, see `slopes`."""
+    h, size = a + eta * u, (eta - 1) ** 2 + kappa**2
+    clear = (1 + eta**2 + kappa**2) * a * size / (h**2 + (b + kappa * u) ** 2)
+    share = Min(1, kappa**2 / (a**2 + kappa**2))
+    rest = 1 - share
+    return clear + 2 * share * ((eta**2 - rest) * (q + u**2) - 2 * u * h * rest * (eta + 1)) / (h * (size + 4 * eta))
 
 
 def through(u: Expr, eta: Expr, kappa: Expr, a: Expr, q: Expr) -> Expr:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import numbers
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,7 @@ import sympy as sp
 
 from ratfit._kernel import Program
 from ratfit._lower import lower
-from ratfit._parse import RatfitError, nearest
+from ratfit._parse import RatfitError, nearest, shortened
 from ratfit._schedule import schedule
 
 RANDOM = "random"
@@ -94,7 +94,7 @@ def setting(
     outside its range or in contradiction with the reference, and for an infinite interval.
     """
     problem = fit.problem
-    asked = dict(parameters or {})
+    asked = by_name(parameters)
     exact, given = _exact(problem, reference)
     values = _values(problem, {name: value for name, value in asked.items() if value != RANDOM}, given)
     ranges = _ranges(problem, [name for name, value in asked.items() if value == RANDOM], given)
@@ -106,7 +106,16 @@ def setting(
     return Setting(exact, fit.formula, arranged(fit), problem.variable, values, ranges, low, high)
 
 
+def by_name(parameters: Any) -> dict[str, Any]:
+    """Values by name; none for None. **Fails** with `RatfitError` for what is no mapping."""
+    if parameters is not None and not isinstance(parameters, Mapping):
+        raise RatfitError(f"parameters = {shortened(repr(parameters), 60)}: give values by name, as in {{'m': 0.2}}")
+    return dict(parameters or {})
+
+
 def _interval(domain: tuple[float, ...], within: tuple[float, float] | None) -> tuple[float, float]:
+    if within is not None and not _is_pair(within):
+        raise RatfitError(f"within = {shortened(repr(within), 60)}: give two floats, low and high, as in (0, 9)")
     low, high = within or domain
     if within and low >= high:
         raise RatfitError(f"[{low}, {high}] is empty or reversed: measure within low < high, as in --within 0 9")
@@ -120,6 +129,14 @@ def _interval(domain: tuple[float, ...], within: tuple[float, float] | None) -> 
             f"[{low}, {high}] is not inside the domain [{domain[0]}, {domain[1]}]: measure on a part of it"
         )
     return low, high
+
+
+def _is_pair(within: Any) -> bool:
+    return isinstance(within, Sequence) and len(within) == 2 and all(isinstance(end, numbers.Real) for end in within)
+
+
+def _is_real(value: Any) -> bool:
+    return isinstance(value, numbers.Real) or (isinstance(value, sp.Expr) and value.is_extended_real is True)
 
 
 def arranged(fit: Any) -> Program:
@@ -153,7 +170,7 @@ def reference_of(problem: Any, name: str) -> Any:
     known = {each.name: each for each in problem.references}
     if name not in known:
         there = ", ".join(known) or "none"
-        raise RatfitError(f"no reference {name!r}, there is: {there}{nearest(name, known)}")
+        raise RatfitError(f"no reference {name!r}, there is: {there}{nearest(str(name), known)}")
     return known[name]
 
 
@@ -173,7 +190,7 @@ def _values(problem: Any, asked: Mapping[str, Value], given: Mapping[sp.Symbol, 
     for name, value in asked.items():
         if name not in symbols:
             raise RatfitError(f"no parameter {name!r}, there is: {known}{nearest(name, symbols)}")
-        if not (isinstance(value, numbers.Real) or (isinstance(value, sp.Expr) and value.is_extended_real)):
+        if not _is_real(value):
             raise RatfitError(f"{name} = {value!r}: a number is needed, or {RANDOM!r}{nearest(str(value), [RANDOM])}")
     values = {symbols[name]: float(value) for name, value in asked.items()}
     for symbol, expression in given.items():

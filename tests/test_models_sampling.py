@@ -254,11 +254,21 @@ def test_jax_draws_what_numpy_draws():
         (lambda: monte_carlo_albedo(LAMBERT, azimuth=math.nan), "azimuth = nan"),
         (lambda: albedo(LAMBERT, azimuth=[0.1, 0.2]), "one number, in radians"),
         (lambda: albedo(LAMBERT, "0.5"), "real numbers"),
+        (lambda: albedo(LAMBERT, [0.5], tolerance=0), "tolerance = 0: give a number above 0"),
+        (lambda: angles(0), "count = 0: give a whole number from 1 on"),
+        (lambda: monte_carlo_albedo(LAMBERT, [0.5], sampler="ggx"), "sampler = 'ggx'"),
     ],
 )
 def test_bad_input_is_said(call, fragment):
     with pytest.raises(RatfitError, match=fragment):
         call()
+
+
+def test_a_sampler_alone_draws_as_a_blend_of_it():
+    mine, theirs = (
+        monte_carlo_albedo(LAMBERT, [0.5], sampler=each, samples=100) for each in (COSINE, Blend(((COSINE, {}),)))
+    )
+    assert mine.values[0] == theirs.values[0]
 
 
 def test_a_whole_number_may_be_written_as_a_power_of_ten():

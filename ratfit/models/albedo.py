@@ -19,7 +19,7 @@ from ratfit._parse import RatfitError
 from ratfit.models._half_sphere import Nodes, facet_nodes, light_nodes, views
 from ratfit.models._model import Model
 from ratfit.models.directions import LETTERS, W, as_floats
-from ratfit.models.samplers import Blend, sampler_for
+from ratfit.models.samplers import Blend, Sampler, sampler_for
 
 ANGLES = 64
 TOLERANCE = 1e-4
@@ -46,6 +46,7 @@ class Albedo:
 
 def angles(count: int = ANGLES) -> Any:
     """Cosines of that many zenith angles from 0 to nearly 90 degrees (89.97 for 64), closer together at the horizon."""
+    count = _whole(count, "count", 1)
     return np.cos(math.pi / 2 * np.sin(math.pi / 2 * np.arange(count) / count))
 
 
@@ -65,6 +66,8 @@ def albedo(
     **Fails** with `RatfitError` for cosines outside (0, 1] and for parameters that are not one number.
     """
     cosines, known = _checked(model, cosines, azimuth, values)
+    if not tolerance > 0:
+        raise RatfitError(f"tolerance = {tolerance}: give a number above 0")
     whole = model.reflectance.has(W) and abs(math.sin(2 * azimuth)) > 1e-9
     ask = _Question(model, azimuth, whole, known)
     found, errors = _doubled(ask, facet_nodes, cosines)
@@ -90,7 +93,7 @@ def monte_carlo_albedo(
     samples: int = 20_000,
     seed: int = 0,
     azimuth: float = 0.0,
-    sampler: Blend | None = None,
+    sampler: Sampler | Blend | None = None,
     **values: Any,
 ) -> Albedo:
     """The same by importance sampling, with one standard deviation for each angle.
@@ -100,7 +103,7 @@ def monte_carlo_albedo(
     """
     cosines, known = _checked(model, cosines, azimuth, values)
     samples, seed = _whole(samples, "samples", 2), _whole(seed, "seed", 0)
-    sampler = sampler or sampler_for(model)
+    sampler = _drawing(model, sampler)
     random = np.random.default_rng(seed)
     means, deviations = [], []
     for view in views(cosines, azimuth)[:, None, :]:
@@ -109,6 +112,14 @@ def monte_carlo_albedo(
             means.append(weights.mean())
             deviations.append(weights.std(ddof=1) / math.sqrt(samples))
     return Albedo(cosines, np.array(means) + _coherent(model, cosines, known), np.array(deviations))
+
+
+def _drawing(model: Model, sampler: Any) -> Blend:
+    if sampler is None:
+        return sampler_for(model)
+    if not isinstance(sampler, Sampler | Blend):
+        raise RatfitError(f"sampler = {sampler!r}: give one of ratfit.models.samplers.SAMPLERS, or leave it out")
+    return sampler if isinstance(sampler, Blend) else Blend(((sampler, {}),))
 
 
 def _whole(number: Any, name: str, least: int) -> int:

@@ -13,7 +13,7 @@ from ratfit._fit import Candidate, Fit
 from ratfit._lower import lower
 from ratfit._parse import RatfitError
 from ratfit._problem import Problem
-from ratfit._setting import Setting, setting
+from ratfit._setting import Setting, by_name, setting
 from ratfit._target import Parameter, Target, sample_values
 from ratfit.gallery import card, is_card
 from ratfit.plot.far import seen, within
@@ -167,14 +167,14 @@ def _settings(problem: Problem, parameters: Parameters | None, reference: str | 
     given = {s.name for each in problem.references if each.name == reference for s in each.parameters}
     if parameters is None and (settings := _settings_of_card(problem)):
         return [{name: float(value) for name, value in each.items() if name not in given} for each in settings]
-    asked = dict(parameters or {})
+    asked = by_name(parameters)
     families = [name for name, value in asked.items() if isinstance(value, Iterable) and not isinstance(value, str)]
     if len(families) > 1:
         raise RatfitError(f"a picture has one family of curves: give {' or '.join(families)} one value")
     for parameter in problem.parameters:
         if parameter.name not in given:
             asked.setdefault(parameter.name, middle(parameter))
-    values = list(asked[families[0]]) if families else []  # type: ignore[arg-type]
+    values = list(asked[families[0]]) if families else []
     if families and not 1 <= len(values) <= MOST:
         raise RatfitError(f"{families[0]} has {len(values)} values: a picture holds 1 to {MOST} curves")
     found = [{**asked, families[0]: value} for value in values] if families else [asked]

@@ -7,8 +7,8 @@ Over one denominator, with v = w + n u:
     F = R/(R + T)     R = |n - 1|**2 (1 + x)     x = (s**2/(u |w|))**2     T = 4 eta + 2 u x Z
     Z = (1 + |n|**2) a |n - 1|**2/|w + n u|**2 + 2 k ((eta**2 - j) (q + u**2)/(a + eta u) - 2 u j (eta + 1))/|n + 1|**2
 
-with k = kappa**2/(a**2 + kappa**2) and j = 1 - k. By complex numbers Z |n + 1|**2 is shorter and dearer, the real part of
-conj(1 + n**2) conj(w) g**2 less 4 u Im(conj(n) g)**2, with g = (n**2 - 1)/(w + n u).
+with k = kappa**2/(a**2 + kappa**2) and j = 1 - k. By complex numbers Z |n + 1|**2 is shorter and dearer: the real part
+of conj(1 + n**2) conj(w) g**2 less 4 u Im(conj(n) g)**2, with g = (n**2 - 1)/(w + n u).
 
 T is also 2 a (q (q + 2) + u**2 (|n|**4 + s**2) + 4 u a (q + s**2))/(u q |n + 1|**2), a sum of positive terms, which has
 more roundings; Z may be negative where the light hardly enters (total reflection: T = 0), and there that sum is used.

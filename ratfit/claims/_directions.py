@@ -22,11 +22,14 @@ def albedo(reflectance: sp.Expr, view: float, **parameters: float) -> float:
     of view, in (0, 1], the view in the plane of the tangent; the parameters' values by name. Gauss-Legendre in the
     light's height and midpoints in its azimuth: right to 1e-4 for lobes that are not narrower than 0.2.
     """
+    import numpy as np
+
     directions, weights = hemisphere()
     letters = _letters(reflectance, view, directions)
-    known = {symbol: float(parameters[symbol.name]) for symbol in reflectance.free_symbols - set(LETTERS)}
-    function = lower(reflectance.xreplace({s: sp.Float(v, 17) for s, v in known.items()}), LETTERS, "numpy")
-    return float((function(*letters) * letters[3] * weights).sum())
+    symbols = sorted(reflectance.free_symbols - set(LETTERS), key=lambda symbol: symbol.name)
+    function = lower(reflectance, [*LETTERS, *symbols], "numpy")
+    known = (np.float64(parameters[symbol.name]) for symbol in symbols)
+    return float((function(*letters, *known) * letters[3] * weights).sum())
 
 
 def _letters(reflectance: sp.Expr, view: float, directions: Any) -> tuple[Any, ...]:
@@ -54,7 +57,7 @@ def hemisphere() -> tuple[Any, Any]:
 
 
 @functools.cache
-def _ends() -> tuple[Any, Any]:
+def ends() -> tuple[Any, Any]:
     """Views and lights, both uniform over the hemisphere; a fixed draw."""
     import numpy as np
 
@@ -70,7 +73,7 @@ def _ends() -> tuple[Any, Any]:
 @functools.cache
 def pairs() -> tuple[Any, ...]:
     """t, u, v, v' and w of pairs of directions."""
-    return cosines(*_ends())
+    return cosines(*ends())
 
 
 def turned(degrees: float, both: bool) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
@@ -79,7 +82,7 @@ def turned(degrees: float, both: bool) -> tuple[tuple[Any, ...], tuple[Any, ...]
 
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    view, light = _ends()
+    view, light = ends()
     return pairs(), cosines(view @ turn.T, light @ turn.T if both else light)
 
 

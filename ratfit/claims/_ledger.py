@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from ratfit._parse import RatfitError, nearest
 from ratfit.claims import (
     background,
+    colours,
     costs,
     course,
     distributions,
@@ -26,6 +27,7 @@ from ratfit.claims import (
     smith,
     smoothie,
     smoothie_fresnel,
+    smoothie_shape,
     toon,
     vectors,
     whole_errors,
@@ -35,10 +37,12 @@ from ratfit.claims._claim import DOCUMENTS, Claim
 
 _THEMES = (
     course,
+    colours,
     highlights,
     toon,
     vectors,
     smoothie,
+    smoothie_shape,
     costs,
     background,
     method,

@@ -6,7 +6,11 @@ needs them imports them late, and the letters are made here once more: symbols o
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
+
+import sympy as sp
 
 from ratfit._target import parameter
 
@@ -16,6 +20,12 @@ if TYPE_CHECKING:
 T, U, V, V_PRIME, W = (parameter(name, 0, 1) for name in ("t", "u", "v", "v_prime", "w"))
 LETTERS = (T, U, V, V_PRIME, W)
 """Those of `ratfit.models.directions`."""
+
+
+@functools.cache
+def made(formula: Callable[..., sp.Expr], *arguments: Any) -> sp.Expr:
+    """A formula of `ratfit.brdf` of those arguments, made once: some take sympy a tenth of a second."""
+    return formula(*arguments)
 
 
 def named(name: str) -> Model:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 
 import sympy as sp
@@ -10,7 +11,8 @@ from ratfit.brdf import distribution, masking
 from ratfit.claims._agreement import ZERO, AtMost
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo, over_pairs
-from ratfit.claims._models import V_PRIME, T, V, W, named
+from ratfit.claims._models import V_PRIME, T, V, W, made, named
+from ratfit.claims._numbers import values
 
 ALPHA, PHI = sp.Symbol("alpha", positive=True), sp.Symbol("varphi", positive=True)
 VIEWS = (0.05, 0.2, 0.5, 1.0)
@@ -18,7 +20,7 @@ VIEWS = (0.05, 0.2, 0.5, 1.0)
 
 def facets(masked: sp.Expr) -> sp.Expr:
     """The specular term of Eq. 8 for facets that reflect all: Beckmann's D with a G."""
-    return distribution.beckmann(T, ALPHA) * masked / (4 * V * V_PRIME)
+    return made(distribution.beckmann, T, ALPHA) * masked / (4 * V * V_PRIME)
 
 
 def greatest_albedo(reflectance: sp.Expr, views: tuple[float, ...] = VIEWS, **parameters: float) -> float:
@@ -30,6 +32,15 @@ def asymmetry(reflectance: sp.Expr, **parameters: float) -> float:
     swapped = reflectance.xreplace({V: V_PRIME, V_PRIME: V})
     there, back = over_pairs(reflectance, **parameters), over_pairs(swapped, **parameters)
     return float(abs(there - back).max() / abs(there).max())
+
+
+ANGLES_OF_EQ_4 = {"F": {"beta"}, "G": {"theta", "theta'"}, "D": {"alpha", "phi"}}
+
+
+def flat_lobe(by_radiance: bool) -> float:
+    """What Lambert's model sends in a direction at 60 degrees over what it sends along the normal."""
+    sent = named("lambert").reflectance * (1 if by_radiance else V)  # the view is where the light goes
+    return float(sent.subs(V, 0.5) / sent.subs(V, 1))
 
 
 POWERS = (0, 1, 2, 3)
@@ -60,7 +71,7 @@ EQ_8 = d / sp.pi * D_LAMBDA + s / (4 * sp.pi * V * V_PRIME) * F * G * D
 
 def rewritten(equation: sp.Expr) -> bool:
     """Whether Eq. 8 is an equation in other letters: one colour put for another."""
-    return bool(sp.simplify(EQ_8.subs(D_LAMBDA, C_LAMBDA) - equation) == 0)
+    return bool(sp.expand(EQ_8.subs(D_LAMBDA, C_LAMBDA) - equation) == 0)
 
 
 def origin_of_eq_8() -> str:
@@ -78,6 +89,17 @@ def anisotropies() -> tuple[float, ...]:
     return tuple(anisotropy(0.2, 0.2 * ratio) for ratio in (1, 1.5, 2, 3, 5))
 
 
+@functools.cache
+def masked_facets() -> sp.Expr:
+    """The same with the masking that belongs to them."""
+    return facets(masking.separable(masking.beckmann, V, V_PRIME, ALPHA))
+
+
+def least_of_facets() -> float:
+    """The least share that Beckmann's facets with their masking reflect, alpha = 1."""
+    return min(albedo(masked_facets(), view, alpha=1.0) for view in VIEWS)
+
+
 def attenuation(heights: float) -> float:
     """He's coefficient of the coherent term at normal incidence, for RMS heights over the wavelength."""
     from ratfit.models.he import attenuation as coefficient
@@ -86,6 +108,31 @@ def attenuation(heights: float) -> float:
 
 
 CLAIMS = (
+    Claim(
+        "S-2-lambert",
+        "Section 2",
+        "a surface with a constant reflectance reflects light equally in every direction",
+        1,
+        lambda: flat_lobe(by_radiance=False),
+        how="the power it sends in a direction at 60 degrees over that along the normal",
+        readings=(Reading("in radiance; the power goes with the cosine", lambda: flat_lobe(by_radiance=True)),),
+    ),
+    Claim(
+        "S-4-angles",
+        "Eq. 4",
+        "the reflectance of Cook and Torrance's model depends on five angles",
+        5,
+        lambda: len(set().union(*ANGLES_OF_EQ_4.values())),
+        how="those in the brackets of F, G and D; a pair of directions has four",
+    ),
+    Claim(
+        "S-3-obstructed",
+        "Section 3",
+        "the light that a G blocks is missing in existing models: none gives it back",
+        AtMost(0.9),
+        least_of_facets,
+        how="the least share that Beckmann's facets with their masking reflect, F = 1, alpha = 1, at four angles",
+    ),
     Claim(
         "S-3-lambert",
         "Eqs. 3, 4",
@@ -104,7 +151,7 @@ CLAIMS = (
         readings=(
             Reading(
                 "with the masking that belongs to the facets; with G = 1 they reflect too much at grazing angles",
-                lambda: greatest_albedo(facets(masking.separable(masking.beckmann, V, V_PRIME, ALPHA)), alpha=0.5),
+                lambda: greatest_albedo(masked_facets(), alpha=0.5),
             ),
         ),
     ),
@@ -183,6 +230,7 @@ CLAIMS = (
 def anisotropy(m: float, n: float) -> float:
     """How many times Ward's D along one axis is that along the other, at 20 degrees."""
     slopes = sp.symbols("m n", positive=True)
-    lobe = distribution.ward_as_printed(T, W, *slopes)
-    along, across = (float(lobe.subs({T: sp.cos(sp.pi / 9), W: w, slopes[0]: m, slopes[1]: n}).evalf()) for w in (1, 0))
+    at = {T: float(sp.cos(sp.pi / 9)), slopes[0]: m, slopes[1]: n}
+    lobe = made(distribution.ward_as_printed, T, W, *slopes)
+    along, across = (float(values(lobe, {**at, W: w})) for w in (1.0, 0.0))
     return max(along / across, across / along)

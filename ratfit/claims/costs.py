@@ -11,7 +11,7 @@ import sympy as sp
 from ratfit.brdf import masking
 from ratfit.claims._agreement import AtLeast, AtMost
 from ratfit.claims._claim import Claim, Reading
-from ratfit.claims._models import V_PRIME, U, V
+from ratfit.claims._models import V_PRIME, U, V, made
 from ratfit.claims.highlights import operations
 
 LIGHT, VIEW, NORMAL = (sp.Matrix(sp.symbols(f"{name}1:4", real=True)) for name in ("l", "v", "n"))
@@ -133,7 +133,7 @@ CLAIMS = (
         "Microfacet Smoothie",
         "Kelemen's G is much cheaper than Smith's",
         AtMost(0.5),
-        lambda: ratio(masking.kelemen(U, V, V_PRIME), masking.separable(masking.ggx, V, V_PRIME, ALPHA)),
+        lambda: ratio(masking.kelemen(U, V, V_PRIME), made(masking.separable, masking.ggx, V, V_PRIME, ALPHA)),
         how="weight of its operations over that of GGX's Smith masking; much is taken as a half",
     ),
     Claim(

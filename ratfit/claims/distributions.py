@@ -12,7 +12,7 @@ from ratfit._target import parameter
 from ratfit.brdf import distribution
 from ratfit.claims._agreement import AtMost, same, unguarded
 from ratfit.claims._claim import Claim, Reading
-from ratfit.claims._models import T, W
+from ratfit.claims._models import T, W, made
 from ratfit.claims._numbers import integral, midpoints
 from ratfit.claims.masking import SLOPES
 from ratfit.claims.method import derived
@@ -44,12 +44,12 @@ def of_peak_one(density: sp.Expr) -> sp.Expr:
 
 def share_below(m: float) -> float:
     """Beckmann's share of facets, by projected area, below t = 1 - m."""
-    return total(T * distribution.beckmann(T, M), {M: m}, 0.0, 1 - m)
+    return total(T * made(distribution.beckmann, T, M), {M: m}, 0.0, 1 - m)
 
 
 def mean_slope(power: int, alpha: float) -> float:
     """The mean of a power of the slope, over alpha to that power, by projected area of Beckmann's facets."""
-    return total(STEEP**power * T * distribution.beckmann(T, ALPHA), {ALPHA: alpha}) / alpha**power
+    return total(STEEP**power * T * made(distribution.beckmann, T, ALPHA), {ALPHA: alpha}) / alpha**power
 
 
 def is_gaussian(density: sp.Expr) -> bool:
@@ -70,12 +70,12 @@ def is_single_fraction(formula: sp.Expr) -> bool:
 
 def steeper(m: float) -> float:
     """The share of Beckmann's facets, by projected area, that are steeper than ten degrees."""
-    return total(T * distribution.beckmann(T, M), {M: m}, 0.0, float(sp.cos(sp.pi / 18)))
+    return total(T * made(distribution.beckmann, T, M), {M: m}, 0.0, float(sp.cos(sp.pi / 18)))
 
 
 @functools.cache
 def eq_20() -> sp.Expr:
-    return sp.pi * distribution.beckmann(T, M)
+    return sp.pi * made(distribution.beckmann, T, M)
 
 
 def printed_21(t: sp.Expr) -> sp.Expr:
@@ -96,7 +96,7 @@ CLAIMS = (
         "Eqs. 7, 10",
         "Ward's D, put in the place of D, keeps the normalisation of Eq. 7 (m = n)",
         1,
-        lambda: farthest_total(T * distribution.ward_as_printed(T, W, M, M).subs(W, 1) / sp.pi, M, SLOPES),
+        lambda: farthest_total(T * made(distribution.ward_as_printed, T, W, M, M).subs(W, 1) / sp.pi, M, SLOPES),
         instead=Reading(
             "it does so with 1/t^4 as a factor, which makes it Beckmann's D for m = n; the found integral is the one "
             "farthest from 1 at the m of Figure 7",
@@ -108,7 +108,9 @@ CLAIMS = (
         "Eq. 10",
         "for m = n Ward's model is isotropic",
         True,
-        lambda: same(distribution.ward_as_printed(T, W, M, M), distribution.ward_as_printed(T, W / 2, M, M)),
+        lambda: same(
+            made(distribution.ward_as_printed, T, W, M, M), made(distribution.ward_as_printed, T, W / 2, M, M)
+        ),
         how="at two azimuths",
     ),
     Claim(
@@ -119,7 +121,7 @@ CLAIMS = (
         lambda: ", ".join(
             name
             for name, density, symbol in (
-                ("Beckmann", distribution.beckmann(T, ALPHA), ALPHA),
+                ("Beckmann", made(distribution.beckmann, T, ALPHA), ALPHA),
                 ("Phong", of_peak_one(distribution.phong(T, N)), N),
                 ("Torrance-Sparrow", sp.exp(-((sp.acos(T) / ALPHA) ** 2)) / sp.pi, ALPHA),
                 ("Trowbridge-Reitz", of_peak_one(distribution.ggx(T, ALPHA)), ALPHA),

@@ -6,11 +6,11 @@ import sympy as sp
 
 from ratfit._schedule import schedule
 from ratfit.brdf import distribution, roughness
-from ratfit.claims._agreement import AtLeast, AtMost, unguarded
+from ratfit.claims._agreement import AtLeast, AtMost, same, unguarded
 from ratfit.claims._claim import Claim, Reading
-from ratfit.claims._models import V_PRIME, T, V
+from ratfit.claims._models import V_PRIME, T, V, made
 from ratfit.claims._numbers import midpoints, values
-from ratfit.claims.distributions import ALPHA, M, N, eq_20, farthest_total, is_gaussian, mean_slope, total
+from ratfit.claims.distributions import ALPHA, M, N, farthest_total, is_gaussian, mean_slope, total
 
 TANGENT = sp.sqrt(1 - T**2) / T
 
@@ -19,13 +19,22 @@ def off_beckmann(alpha: float) -> float:
     """How far Phong's distribution of the same peak is from Beckmann's, over the peak."""
     at = {T: midpoints(0.5, 1), ALPHA: alpha}
     phong = distribution.phong(T, roughness.exponent_by_peak(ALPHA))
-    return float(abs(values(phong - distribution.beckmann(T, ALPHA), at)).max() * sp.pi * alpha**2)
+    return float(abs(values(phong - made(distribution.beckmann, T, ALPHA), at)).max() * sp.pi * alpha**2)
 
 
 def weight_of_ggx() -> float:
     """The weight of GGX's operations over those of Blinn's power."""
     costs = [schedule(unguarded(each(T, ALPHA)), T).cost for each in (distribution.ggx, distribution.blinn)]
     return costs[0].weight / costs[1].weight
+
+
+SETTINGS = (0.1, 0.5, 1.0)
+"""Roughnesses at which normalisations are tried."""
+
+
+def printed_beckmann(alpha: sp.Expr) -> sp.Expr:
+    """Beckmann's D as the slides on micro-facets print it."""
+    return sp.exp(-(TANGENT**2) / alpha**2) / (sp.pi * alpha**2 * T**4)
 
 
 def steeper_share(density: sp.Expr, setting: dict[sp.Symbol, float]) -> float:
@@ -36,16 +45,14 @@ def steeper_share(density: sp.Expr, setting: dict[sp.Symbol, float]) -> float:
 def tail() -> float:
     """How many times GGX is above Beckmann at slopes four times alpha, alpha = 0.1."""
     at = {T: 1 / (1 + 0.4**2) ** 0.5, ALPHA: 0.1}
-    return float(values(distribution.ggx(T, ALPHA), at) / values(distribution.beckmann(T, ALPHA), at))
+    return float(values(distribution.ggx(T, ALPHA), at) / values(made(distribution.beckmann, T, ALPHA), at))
 
 
-def totals_at_half(weight: sp.Expr) -> tuple[float, ...]:
-    """The integrals of Phong's, Beckmann's and GGX's distributions at alpha = 1/2, with a weight."""
-    at = {ALPHA: 0.5}
+def totals(weight: sp.Expr) -> tuple[float, ...]:
+    """The integrals of Phong's, Beckmann's and GGX's distributions with a weight, those farthest from 1."""
     phong = distribution.phong(T, roughness.exponent_by_peak(ALPHA))
-    return tuple(
-        total(weight * each, at) for each in (phong, distribution.beckmann(T, ALPHA), distribution.ggx(T, ALPHA))
-    )
+    lobes = (phong, made(distribution.beckmann, T, ALPHA), distribution.ggx(T, ALPHA))
+    return tuple(farthest_total(weight * each, ALPHA, SETTINGS) for each in lobes)
 
 
 CLAIMS = (
@@ -53,9 +60,9 @@ CLAIMS = (
         "DP-model",
         "Micro-facet BRDF lighting",
         "D F G/(4 (N.L)(N.V)) is Cook and Torrance's term, s/(4 pi v v') F G D of schlick1994",
-        lambda: eq_20() / (4 * sp.pi * V * V_PRIME),
-        lambda: distribution.beckmann(T, M) / (4 * V * V_PRIME),
-        how="its D being that of schlick1994 over pi",
+        lambda: sp.exp((T**2 - 1) / (M**2 * T**2)) / (M**2 * T**4) / (4 * sp.pi * V * V_PRIME),
+        lambda: printed_beckmann(M) / (4 * V * V_PRIME),
+        how="both in print with Beckmann's D, F = G = s = 1: the D of schlick1994 is pi times the other",
     ),
     Claim(
         "DP-D-smooth",
@@ -74,23 +81,27 @@ CLAIMS = (
         "D term",
         "a distribution must integrate to 1: Phong's, Beckmann's and GGX's do",
         (1, 1, 1),
-        lambda: totals_at_half(weight=sp.S.One),
-        readings=(Reading("with the cosine N.H as a weight, by projected area", lambda: totals_at_half(weight=T)),),
+        lambda: totals(weight=sp.S.One),
+        readings=(Reading("with the cosine N.H as a weight, by projected area", lambda: totals(weight=T)),),
     ),
     Claim(
         "DP-D-beckmann",
         "D term",
         "Beckmann's D is exp(-tan^2/alpha^2)/(pi alpha^2 (N.H)^4)",
-        lambda: sp.exp(-(TANGENT**2) / ALPHA**2) / (sp.pi * ALPHA**2 * T**4),
-        lambda: eq_20().subs(M, ALPHA) / sp.pi,
-        how="Eq. 20 of schlick1994 over pi",
+        True,
+        lambda: (
+            is_gaussian(printed_beckmann(ALPHA))
+            and abs(farthest_total(T * printed_beckmann(ALPHA), ALPHA, SETTINGS) - 1) < 1e-9
+            and same(printed_beckmann(ALPHA), unguarded(distribution.beckmann(T, ALPHA)))
+        ),
+        how="it is normalised, its slopes are Gaussian, and it is Eq. 20 of schlick1994 over pi",
     ),
     Claim(
         "DP-D-ggx",
         "D term",
         "the two forms of GGX, with and without the tangent, are equivalent",
         ALPHA**2 / (sp.pi * T**4 * (ALPHA**2 + TANGENT**2) ** 2),
-        lambda: distribution.ggx(T, ALPHA),
+        lambda: ALPHA**2 / (sp.pi * (T**2 * (ALPHA**2 - 1) + 1) ** 2),
         how="at 50 digits",
     ),
     Claim(
@@ -107,7 +118,7 @@ CLAIMS = (
         "Conversions",
         "alpha = sqrt(2/(n + 2)) and n = -2 + 2/alpha^2 are inverse to each other",
         ALPHA,
-        lambda: roughness.alpha_by_peak(roughness.exponent_by_peak(ALPHA)),
+        lambda: sp.sqrt(2 / (-2 + 2 / ALPHA**2 + 2)),
         how="at 50 digits",
     ),
     Claim(
@@ -117,7 +128,7 @@ CLAIMS = (
         (1 / (sp.pi * ALPHA**2), 1 / (sp.pi * ALPHA**2), 1 / (sp.pi * ALPHA**2)),
         lambda: (
             distribution.phong(T, roughness.exponent_by_peak(ALPHA)).subs(T, 1),
-            distribution.beckmann(T, ALPHA).subs(T, 1),
+            made(distribution.beckmann, T, ALPHA).subs(T, 1),
             distribution.ggx(T, ALPHA).subs(T, 1),
         ),
         how="all three have one peak then",
@@ -138,15 +149,15 @@ CLAIMS = (
         "Cook-Torrance, distribution",
         "Blinn's version has a normalisation term",
         1,
-        lambda: farthest_total(T * distribution.blinn(T, ALPHA), ALPHA, (0.1, 0.5, 1.0)),
+        lambda: farthest_total(T * distribution.blinn(T, ALPHA), ALPHA, SETTINGS),
         how="quadrature with the cosine at three roughnesses",
     ),
     Claim(
         "PM-D-beckmann",
         "Cook-Torrance, distribution",
         "the two forms of Beckmann's D, with angle and with dot products, are equal",
+        lambda: sp.exp(-((sp.tan(sp.acos(T)) / ALPHA) ** 2)) / (sp.pi * ALPHA**2 * sp.cos(sp.acos(T)) ** 4),
         lambda: sp.exp((T**2 - 1) / (T**2 * ALPHA**2)) / (sp.pi * ALPHA**2 * T**4),
-        lambda: distribution.beckmann(T, ALPHA),
         how="at 50 digits",
     ),
     Claim(
@@ -165,7 +176,7 @@ CLAIMS = (
         "Cook-Torrance, distribution",
         "the GGX version is a distribution",
         1,
-        lambda: farthest_total(T * distribution.ggx(T, ALPHA), ALPHA, (0.1, 0.5, 1.0)),
+        lambda: farthest_total(T * distribution.ggx(T, ALPHA), ALPHA, SETTINGS),
         how="quadrature with the cosine at three roughnesses",
     ),
     Claim(
@@ -189,10 +200,10 @@ CLAIMS = (
         "Previous work",
         "Beckmann's and Phong's distributions come from Gaussian heights",
         (True, True),
-        lambda: (is_gaussian(distribution.beckmann(T, ALPHA)), is_gaussian(distribution.phong(T, N))),
+        lambda: (is_gaussian(made(distribution.beckmann, T, ALPHA)), is_gaussian(distribution.phong(T, N))),
         instead=Reading(
             "Beckmann's slopes are Gaussian, Phong's only in the limit of large exponents",
-            lambda: is_gaussian(distribution.beckmann(T, ALPHA)) and off_beckmann(0.02) < off_beckmann(0.1) / 10,
+            lambda: is_gaussian(made(distribution.beckmann, T, ALPHA)) and off_beckmann(0.02) < off_beckmann(0.1) / 10,
         ),
     ),
     Claim(

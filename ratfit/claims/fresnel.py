@@ -11,6 +11,7 @@ from ratfit._target import parameter
 from ratfit.brdf import fresnel, metals
 from ratfit.claims._agreement import AtLeast, AtMost
 from ratfit.claims._claim import Claim, Reading
+from ratfit.claims._models import made
 from ratfit.claims._numbers import midpoints, values
 from ratfit.claims.method import derived
 
@@ -51,7 +52,7 @@ def all_materials() -> tuple[Material, ...]:
 
 def curve(material: Material, u: Any) -> Any:
     """The true factor at many u."""
-    return values(fresnel.conductor(U, ETA, KAPPA), {U: u, **_constants(material)})
+    return values(made(fresnel.conductor, U, ETA, KAPPA), {U: u, **_constants(material)})
 
 
 def _constants(material: Material) -> dict[sp.Symbol, float]:
@@ -102,9 +103,9 @@ def derivative_at_normal(order: int) -> float:
 
 def flat_index() -> sp.Expr:
     """The one index above 1 of a dielectric whose second derivative vanishes at u = 1."""
-    second = sp.simplify(sp.diff(fresnel.dielectric_as_printed(U, ETA), U, 2).subs(U, 1))
     index = sp.Symbol("n", positive=True)
-    (root,) = [each for each in sp.solve(sp.numer(sp.together(second.subs(ETA, index))), index) if each > 1]
+    second = sp.diff(fresnel.dielectric_as_printed(U, index), U, 2).subs(U, 1)
+    (root,) = [each for each in sp.solve(sp.numer(sp.together(second)), index) if each > 1]
     return root
 
 
@@ -279,9 +280,9 @@ CLAIMS = (
     Claim(
         "S-3-proportion",
         "Section 3, Figure 2",
-        "the part reflected by the surface of a varnish grows with the angle of incidence",
-        True,
-        lambda: falls_with_u(DIELECTRICS),
-        how="diamond and glass, F falls in u all the way",
+        "a varnish reflects more as the angle of incidence grows: most light at large angles, little at small ones",
+        (True, AtLeast(0.5), AtMost(0.5)),
+        lambda: (falls_with_u(DIELECTRICS), *(float(curve(DIELECTRICS[1], cosine)) for cosine in (0.05, 1.0))),
+        how="F of diamond and glass falls in u all the way; glass at 87 degrees and at normal incidence",
     ),
 )

@@ -77,10 +77,10 @@ def outside_of_shares() -> float:
     """How far Eqs. 16 to 19, as printed, are outside [0, 1] at most, over pairs of directions."""
     import numpy as np
 
-    formulas = [masking.torrance_sparrow_as_printed(T, U, V, V_PRIME)]
-    for each in (masking.smith_as_printed, masking.schlick):
-        formulas += [masking.separable(each, V, V_PRIME, sp.Float(m, 17)) for m in SLOPES]
-    found = np.stack([over_pairs(each) for each in formulas])
+    products = [masking.separable(each, V, V_PRIME, M) for each in (masking.smith_as_printed, masking.schlick)]
+    found = np.stack([over_pairs(each, m=m) for each in products for m in SLOPES])
+    grooves = over_pairs(masking.torrance_sparrow_as_printed(T, U, V, V_PRIME))
+    found = np.concatenate([found.ravel(), grooves])
     return float(max(found.max() - 1, -found.min(), 0))
 
 

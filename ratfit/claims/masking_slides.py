@@ -5,21 +5,27 @@ from __future__ import annotations
 import sympy as sp
 
 from ratfit.brdf import distribution, masking
-from ratfit.claims._agreement import ZERO, AtMost
+from ratfit.claims._agreement import ZERO, AtLeast, AtMost
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import over_pairs
-from ratfit.claims._models import LETTERS, V_PRIME, T, U, V
+from ratfit.claims._models import LETTERS, V_PRIME, T, U, V, made
 from ratfit.claims._numbers import midpoints, values
-from ratfit.claims.masking import ALPHA, OneSided, apart, off_from_area, torrance
+from ratfit.claims.masking import ALPHA, N, OneSided, apart, off_from_area, torrance
 
 ROUGHNESSES = (0.1, 0.25, 0.5, 1.0)
+
+
+def fraction(a: sp.Expr) -> sp.Expr:
+    """The slides' fraction for Beckmann's G1, below a = 1.6."""
+    above, below = sp.Rational("3.535") * a + sp.Rational("2.181") * a**2, sp.Rational("2.276") * a
+    return sp.nsimplify(sp.radsimp(above / (1 + below + sp.Rational("2.577") * a**2)))
 
 
 def shortcut_error(shortcut: sp.Expr, one_sided: OneSided, alpha: float) -> float:
     """The mean error of a shortcut for G over pairs of directions, against the separable product."""
     import numpy as np
 
-    exact = masking.separable(one_sided, V, V_PRIME, ALPHA)
+    exact = made(masking.separable, one_sided, V, V_PRIME, ALPHA)
     return float(np.mean(np.abs(over_pairs(shortcut) - over_pairs(exact, alpha=alpha))))
 
 
@@ -33,10 +39,15 @@ def is_better_shortcut() -> bool:
     )
 
 
+def share_seen(alpha: float) -> float:
+    """The share of pairs of directions for which GGX's G is above 0.9."""
+    return float((over_pairs(made(masking.separable, masking.ggx, V, V_PRIME, ALPHA), alpha=alpha) > 0.9).mean())
+
+
 def excess_of_implicit() -> float:
     """The most by which G = v v' is above the separable G of GGX and of Beckmann."""
     found = [
-        over_pairs(masking.implicit(V, V_PRIME) - masking.separable(each, V, V_PRIME, ALPHA), alpha=alpha).max()
+        over_pairs(masking.implicit(V, V_PRIME) - made(masking.separable, each, V, V_PRIME, ALPHA), alpha=alpha).max()
         for each in (masking.ggx, masking.beckmann)
         for alpha in ROUGHNESSES
     ]
@@ -76,9 +87,12 @@ CLAIMS = (
         instead=Reading(
             "the fraction goes above 1 a little before a = 1.6, where it jumps down to 1; held at 1 from where it "
             "comes there, at a = (1259 - sqrt(1081))/792, it stays below",
-            lambda: all(
-                values(masking.beckmann_rational(V, ALPHA), {V: midpoints(), ALPHA: each}).max() <= 1
-                for each in ROUGHNESSES
+            lambda: (
+                fraction((1259 - sp.sqrt(1081)) / 792) == 1 < fraction(sp.Rational(8, 5))
+                and all(
+                    values(masking.beckmann_rational(V, ALPHA), {V: midpoints(), ALPHA: each}).max() <= 1
+                    for each in ROUGHNESSES
+                )
             ),
         ),
     ),
@@ -125,6 +139,38 @@ CLAIMS = (
             "the printed formulas hold above the surface and need a 0 below it",
             lambda: float(values(masking.ggx(V, ALPHA), {V: -0.5, ALPHA: 0.5})) == 0,
         ),
+    ),
+    Claim(
+        "DP-G-mostly",
+        "D, F and G",
+        "the geometry term is mostly 1",
+        "mostly",
+        None,
+        readings=(
+            Reading(
+                "for smooth surfaces: that of GGX with alpha = 1/10 is above 0.9 for most pairs, with alpha = 1 "
+                "for less than a tenth of them; the found number is the share of the former",
+                lambda: share_seen(0.1) if share_seen(1.0) < 0.1 else None,
+                AtLeast(0.5),
+            ),
+        ),
+        open="mostly means no number",
+    ),
+    Claim(
+        "DP-G1-phong-a",
+        "G term",
+        "a = sqrt(n/2 + 1)/tan for Phong is Beckmann's 1/(alpha tan) by the conversion of the same slides",
+        lambda: sp.sqrt(N / 2 + 1),
+        lambda: 1 / sp.sqrt(2 / (N + 2)),
+        how="at 50 digits, without the tangent",
+    ),
+    Claim(
+        "DP-V-roughness",
+        "Visibility",
+        "V = 1 does not depend on roughness",
+        0,
+        lambda: len(masking.implicit(V, V_PRIME).free_symbols - set(LETTERS)),
+        how="the number of its parameters",
     ),
     Claim(
         "DP-V-1",

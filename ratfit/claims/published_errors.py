@@ -10,7 +10,7 @@ import sympy as sp
 from ratfit.brdf import distribution, fresnel, masking
 from ratfit.claims._agreement import AtMost, Near, Rounded
 from ratfit.claims._claim import Claim, Reading
-from ratfit.claims._models import T, V
+from ratfit.claims._models import T, V, made
 from ratfit.claims._numbers import midpoints, peak_mean, relative_mean, values
 from ratfit.claims.fresnel import F, U, curve, normal, of_figure_5
 from ratfit.claims.masking import SLOPES, M
@@ -41,7 +41,7 @@ def of_smith(definition: Definition) -> float:
 
 
 def of_beckmann(definition: Definition) -> float:
-    return _over_slopes(definition, distribution.beckmann_rational(T, M), distribution.beckmann(T, M), T)
+    return _over_slopes(definition, distribution.beckmann_rational(T, M), made(distribution.beckmann, T, M), T)
 
 
 def _over_slopes(definition: Definition, fit: sp.Expr, exact: sp.Expr, variable: sp.Symbol) -> float:

@@ -9,7 +9,7 @@ from ratfit.brdf import distribution, fresnel, masking
 from ratfit.claims._agreement import ZERO, AtMost, same
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo
-from ratfit.claims._models import V_PRIME, T, U, V, W
+from ratfit.claims._models import V_PRIME, T, U, V, W, made
 from ratfit.claims._numbers import integral, values
 from ratfit.claims.background import asymmetry
 
@@ -46,8 +46,9 @@ def mean_azimuth(factor: sp.Expr, p: float) -> float:
 
 def of_ward(w: float, p: float) -> float:
     """The share of an azimuth in Ward's normalised distribution with m/n = p, as A counts it."""
-    m, n = sp.Float(p / 2, 17), sp.Rational(1, 2)
-    return 2 * float(sp.pi) * integral(T * distribution.ward(T, sp.Float(w, 17), m, n), T, 0.0, 1.0)
+    m, n = sp.symbols("m n", positive=True)
+    lobe = T * made(distribution.ward, T, W, m, n)
+    return 2 * float(sp.pi) * integral(lobe, T, 0.0, 1.0, {W: w, m: p / 2, n: 0.5})
 
 
 def is_share_of_ward(factor: sp.Expr, p: float = 0.2) -> bool:

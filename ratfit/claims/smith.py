@@ -10,7 +10,7 @@ from ratfit._target import parameter
 from ratfit.brdf import masking
 from ratfit.claims._agreement import AtMost
 from ratfit.claims._claim import Claim, Reading
-from ratfit.claims._models import V_PRIME, V
+from ratfit.claims._models import V_PRIME, V, made
 from ratfit.claims._numbers import largest, midpoints, values
 from ratfit.claims.masking import SLOPES, M, OneSided, apart, slope_jump, turned_by
 from ratfit.claims.method import derived
@@ -43,7 +43,8 @@ def seen_by_integration(v: float, sigma: float) -> Any:
 def off_smith(formula: OneSided) -> float:
     """How far a formula in v and m is from Smith's definition at most, at six places."""
     places = [(v, m) for v in (0.25, 0.875) for m in (0.125, 0.25, 0.5)]
-    return max(abs(float(values(formula(V, M), {V: v, M: m}) - seen_by_integration(v, m))) for v, m in places)
+    given = formula(V, M)
+    return max(abs(float(values(given, {V: v, M: m}) - seen_by_integration(v, m))) for v, m in places)
 
 
 def m_of_eq_18() -> sp.Expr:
@@ -66,7 +67,7 @@ def ratio_of_slopes() -> sp.Expr:
 
 def worst_at_grazing() -> float:
     """The greatest size of Eq. 18 at v = 0, at the m of Figure 6."""
-    return max(abs(float(values(masking.smith_as_printed(V, M), {V: 0.0, M: m}))) for m in SLOPES)
+    return max(abs(float(values(made(masking.smith_as_printed, V, M), {V: 0.0, M: m}))) for m in SLOPES)
 
 
 def worst_place(m: float) -> float:
@@ -74,7 +75,7 @@ def worst_place(m: float) -> float:
     import numpy as np
 
     v = midpoints()
-    error = values(masking.schlick(V, M) - masking.smith_as_printed(V, M), {V: v, M: m})
+    error = values(masking.schlick(V, M) - made(masking.smith_as_printed, V, M), {V: v, M: m})
     return float(v[np.argmax(np.abs(error))])
 
 
@@ -87,7 +88,7 @@ def slope_at_grazing(formula: sp.Expr) -> float:
 def worst_away_from_normal() -> float:
     """The greatest difference of Eqs. 19 and 18 for v up to 0.9, at the m of Figure 6."""
     v = midpoints(0, 0.9)
-    return max(largest(masking.schlick(V, M) - masking.smith_as_printed(V, M), {V: v, M: m}) for m in SLOPES)
+    return max(largest(masking.schlick(V, M) - made(masking.smith_as_printed, V, M), {V: v, M: m}) for m in SLOPES)
 
 
 def roughest_of_product(one_sided: OneSided) -> float:
@@ -126,7 +127,8 @@ CLAIMS = (
             "slope at v = 0, and the found number is how far they are apart at most, of six places",
             lambda: (
                 off_smith(masking.smith) < 1e-12
-                and abs(slope_at_grazing(masking.smith(V, M)) - slope_at_grazing(masking.smith_as_printed(V, M))) < 1e-6
+                and abs(slope_at_grazing(masking.smith(V, M)) - slope_at_grazing(made(masking.smith_as_printed, V, M)))
+                < 1e-6
             ),
         ),
     ),
@@ -193,7 +195,7 @@ CLAIMS = (
             "and above for m = 1/2 it is less than half as great; very similar is taken as within 0.05",
             lambda: (
                 all(worst_place(m) < 0.25 for m in SLOPES[:-1])
-                and 2 * apart(masking.schlick(V, M), masking.smith_as_printed(V, M), M, SLOPES[-1:])
+                and 2 * apart(masking.schlick(V, M), made(masking.smith_as_printed, V, M), M, SLOPES[-1:])
                 < worst_away_from_normal()
             ),
         ),

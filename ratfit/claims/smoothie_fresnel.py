@@ -10,6 +10,8 @@ import sympy as sp
 from ratfit.brdf import fresnel
 from ratfit.claims._agreement import AtLeast, AtMost, Near
 from ratfit.claims._claim import Claim, Reading
+from ratfit.claims._directions import over_pairs
+from ratfit.claims._models import V_PRIME, V
 from ratfit.claims._numbers import midpoints, values
 from ratfit.claims.fresnel import COMMON, F, Material, U, shape, spread_of_shapes
 
@@ -56,10 +58,15 @@ def error_below(limit: float, low: bool) -> float:
     return float(error[u < limit].max() if low else error[u >= limit].max())
 
 
-def greatest_mean_height(u: float) -> float:
-    """The greatest (v + v')/2 that a pair of directions with L.H = u can have: t u with t at most 1."""
-    t = sp.Symbol("t", positive=True)
-    return float(sp.maximum(t * u, t, sp.Interval(0, 1)))
+def greatest_mean_height(highest: float) -> float:
+    """The greatest (v + v')/2 of all pairs of directions with L.H up to a bound."""
+    u, height = over_pairs(U), over_pairs((V + V_PRIME) / 2)
+    return float(height[u <= highest].max())
+
+
+def share_nearer_to_zero() -> float:
+    """The share of pairs of directions for which N.V is nearer to 0 than L.H."""
+    return float((over_pairs(V) < over_pairs(U)).mean())
 
 
 def difference(a: sp.Expr, b: sp.Expr, low: float) -> float:
@@ -125,9 +132,17 @@ CLAIMS = (
         "SM-F-grazing",
         "Fresnel term",
         "L.H is small only at extremely grazing angles",
-        0.2,
+        AtMost(0.2),
         lambda: greatest_mean_height(0.2),
-        how="at L.H = 0.2 the mean of the cosines N.L and N.V, N.H times L.H, is at most 0.2",
+        how="the greatest mean of the cosines N.L and N.V where L.H is at most 0.2, over pairs of directions",
+    ),
+    Claim(
+        "SM-F-environment",
+        "Fresnel term",
+        "for environment maps N.V stands in the place of L.H, and is much closer to 0",
+        AtLeast(0.75),
+        share_nearer_to_zero,
+        how="the share of pairs of directions for which it is",
     ),
     Claim(
         "SM-F-shapes",

@@ -9,7 +9,7 @@ from ratfit.brdf import masking
 from ratfit.claims._agreement import AtLeast, AtMost, Rounded, agrees
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import over_pairs
-from ratfit.claims._models import V_PRIME, T, U, V
+from ratfit.claims._models import V_PRIME, T, U, V, made
 from ratfit.claims._numbers import peak_mean, relative_mean
 from ratfit.claims.fresnel import of_figure_5
 from ratfit.claims.masking import SLOPES, M
@@ -38,7 +38,7 @@ def stand_in(fast: bool) -> Any:
 
 def of_eq_16(definition: Definition) -> float:
     """Eq. 16 in place of Smith's product, over pairs of directions, the mean over the m of Figure 6."""
-    exact = masking.separable(masking.smith_as_printed, V, V_PRIME, M)
+    exact = made(masking.separable, masking.smith_as_printed, V, V_PRIME, M)
     grooves = over_pairs(masking.torrance_sparrow(T, U, V, V_PRIME))
     return sum(definition(grooves, over_pairs(exact, m=each)) for each in SLOPES) / len(SLOPES)
 

@@ -265,6 +265,24 @@ def test_plot_draws_on_the_axes_given_and_shows_nothing():
     assert "cut" in cut.get_xlabel()
 
 
+def test_a_picture_says_facts_as_mathematics():
+    from ratfit.plot import plot_study
+
+    def entries(*case):
+        axes = plot_study(studied(*case))
+        return {handle.get_label() for handle in axes.get_legend_handles_labels()[0]}, axes
+
+    found, axes = entries("sin(x)", "0", "pi/2")
+    assert r"value: $f(0) = 0$, $f(\pi/2) = 1$" in found and r"slope: $f'(0) = 1$, $f'(\pi/2) = 0$" in found
+    assert axes.get_title() == r"$\sin{\left(x \right)}$"
+    found, axes = entries("x+1/(x-1/2)", "0", "1")
+    assert r"pole: $f \cdot (x - 1/2) \to 1$ as $x \to 1/2$" in found and "asymptote: $x$" in found
+    found, axes = entries("tanh(x)", "0", "oo")
+    assert r"limit: $f \to 1$ as $x \to \infty$" in found and "[0, ∞]" in axes.get_xlabel()
+    found, axes = entries("cos(x)-x", "0", "2")
+    assert "zero: $f(0.7391) = 0$" in found, found
+
+
 @pytest.mark.parametrize(
     "case, constant",
     [

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -15,9 +14,11 @@ from ratfit._condition import Limit
 from ratfit._parse import shortened
 from ratfit._study import Fact, Study
 from ratfit._study.curve import Curve
+from ratfit.plot.entries import entry
+from ratfit.plot.facts import fact_text, title_text
 from ratfit.plot.marks import Marker, Window, draw_asymptote, draw_point, draw_pole, draw_tangent, room_between
-from ratfit.plot.style import BLACK, BLUE, LETTERS, PURPLE, RED, dress, legend_below, settings
-from ratfit.plot.text import plain
+from ratfit.plot.style import BLACK, BLUE, PURPLE, RED, axes_width, dress, legend_below, settings
+from ratfit.plot.text import on_a_line, plain, text_depth
 from ratfit.plot.view import broken, cut, span
 
 if TYPE_CHECKING:
@@ -38,9 +39,6 @@ _NAMES = {
     **{"value": "value", "zero": "zero", "maximum": "maximum", "minimum": "minimum", "inflection": "inflection"},
     **{"slope": "slope", "limit": "limit", "asymptote": "asymptote", "pole": "pole", "singularity": "singularity"},
 }
-
-_DECIMALS = re.compile(r"\d+\.\d{5,}(?![\de])")
-"""Decimals that a picture has no room for."""
 
 
 def plot_study(study: Study, axes: Axes | None = None) -> Axes:
@@ -65,8 +63,9 @@ def _draw(axes: Axes, study: Study, view: _View, is_ours: bool) -> None:
     axes.set_xlim(window.left, window.right)
     axes.set_ylim(window.bottom, window.top)
     axes.set_xlabel(plain(_x_label(study, view)))
-    axes.set_ylabel(f"f({study.target.variable})")
-    axes.set_title(plain(shortened(str(study.target.expression), 80)), fontsize=10)
+    axes.set_ylabel(f"$f({on_a_line(study.target.variable)})$")
+    title = title_text(study, 0.95 * axes_width(axes)) or plain(shortened(str(study.target.expression), 80))
+    axes.set_title(title, fontsize=10, pad=6 + text_depth(title, 10))
     dress(axes)
     legend_below(axes, handles, is_ours)
 
@@ -172,7 +171,7 @@ def _draw_lines(axes: Axes, study: Study, view: _View) -> list[Any]:
         place = _number(fact.place, view.curve)
         if math.isfinite(place):
             handles.append((draw_pole(axes, place), fact))
-    return _entries(handles)
+    return _entries(handles, study)
 
 
 def _far_off(fact: Fact, view: _View) -> bool:
@@ -196,7 +195,7 @@ def _draw_tangents(axes: Axes, study: Study, view: _View) -> list[Any]:
         line = draw_tangent(axes, view.window, (place, middle), slope, room)
         if fact.kind == "slope":
             handles.append((line, fact))
-    return _entries(handles)
+    return _entries(handles, study)
 
 
 def _is_slope(fact: Fact) -> bool:
@@ -211,18 +210,16 @@ def _draw_points(axes: Axes, study: Study, view: _View) -> list[Any]:
             continue
         point = draw_point(axes, place, _number(fact.value, view.curve), _MARKERS[fact.kind])
         handles.append((point, fact))
-    return _entries(handles)
+    return _entries(handles, study)
 
 
-def _entries(handles: Sequence[tuple[Any, Fact]]) -> list[Any]:
+def _entries(handles: Sequence[tuple[Any, Fact]], study: Study) -> list[Any]:
     """One entry for each kind, with the facts that fit on a line."""
     found: dict[str, tuple[Any, list[str]]] = {}
     for handle, fact in handles:
-        text = fact.text.removeprefix(f"{fact.kind} ").split(" in a ")[0].split(", beyond")[0].split(", of order")[0]
-        text = _DECIMALS.sub(lambda number: f"{float(number[0]):.5g}", text.split(": the asymptote is ")[-1])
-        found.setdefault(fact.kind, (handle, []))[1].append(text)
+        found.setdefault(fact.kind, (handle, []))[1].append(fact_text(fact, study))
     for kind, (handle, texts) in found.items():
-        handle.set_label(plain(shortened(f"{_NAMES[kind]}: {', '.join(dict.fromkeys(texts))}", LETTERS)))
+        handle.set_label(entry(f"{_NAMES[kind]}:", list(dict.fromkeys(texts))))
     return [handle for handle, _ in found.values()]
 
 
@@ -231,7 +228,8 @@ def _x_label(study: Study, view: _View) -> str:
     low, high = study.target.domain
     label = str(x)
     if low.is_infinite or high.is_infinite:
-        label += f"   (cut: the domain is [{low}, {high}])"
+        ends = f"[{low}, {high}]".replace("oo", "∞").replace("-", "−")
+        label += f"   (cut: the domain is {ends})"
     if view.curve.middle:
         label += "   at " + ", ".join(f"{p} = {v}" for p, v in view.curve.middle.items())
     return label

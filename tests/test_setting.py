@@ -1,4 +1,4 @@
-"""What a measurement is asked at: the part of the domain and the values of parameters that make no sense are refused."""
+"""What a measurement is asked at: parts of the domain and values of parameters that make no sense are refused."""
 
 import math
 

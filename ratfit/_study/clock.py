@@ -14,7 +14,7 @@ from ratfit._deadline import TimeLimit
 Found = TypeVar("Found")
 
 CALL_SECONDS = 1.0
-"""How long one call may last: what sympy finds at all it mostly finds sooner."""
+"""How long one call may last, of the processor's time: what sympy finds at all it mostly finds sooner."""
 
 MOMENT = 0.02
 """Seconds in which nothing is worth starting."""

@@ -1,6 +1,7 @@
 """What a formula of reflectance refuses: text, arrays, nothing, and numbers that mean nothing; what it takes."""
 
 import inspect
+import math
 from fractions import Fraction
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 import sympy as sp
 
 from ratfit._parse import RatfitError
-from ratfit.brdf import fresnel, masking, sampling
+from ratfit.brdf import distribution, fresnel, masking, roughness, sampling
 
 u, x = sp.symbols("u x", real=True)
 
@@ -40,6 +41,12 @@ IMPOSSIBLE = [
     (masking.ggx_correlated, (u, x, np.float32(-0.5)), "ggx_correlated: alpha is -0.5"),
     (masking.phong, (u, -sp.oo), "phong: exponent is -oo"),
     (masking.schlick_roughness, (u, -1), "schlick_roughness: r is -1"),
+    (distribution.beckmann, (u, -0.3), "beckmann: alpha is -0.3: give 0 or more"),
+    (distribution.ward, (u, x, 0.2, -1), "ward: n is -1"),
+    (distribution.zenith, (u, 2), "zenith: r is 2: give a number from 0 to 1"),
+    (distribution.ggx, (u, x, sp.I), "ggx: sine_squared is I: give a real number"),
+    (roughness.alpha_by_peak, (-3,), "alpha_by_peak: n is -3: give -2 or more"),
+    (roughness.ggx_from_r, (1.5,), "ggx_from_r: r is 1.5"),
     (sampling.ggx_cosine, (2, 0.3), "ggx_cosine: a is 2: give a number from 0 to 1"),
     (sampling.azimuth, (x, 1.5), "azimuth: p is 1.5"),
 ]
@@ -58,6 +65,15 @@ def test_numbers_of_every_kind_are_taken(half):
     assert float(masking.ggx(sp.S.One, half).subs(x, 0.5)) == 1
 
 
+def test_numbers_alone_give_a_number():
+    assert float(distribution.ggx(1, 0.5)) == pytest.approx(4 / math.pi, rel=1e-15)
+    assert float(distribution.ggx(1.0, 0.5, 0)) == pytest.approx(4 / math.pi, rel=1e-15)
+    assert float(distribution.ward(0.8, 0.6, 0.3, 0.3)) == pytest.approx(
+        float(distribution.beckmann(0.8, 0.3)), rel=1e-14
+    )
+    assert float(roughness.alpha_by_peak(roughness.exponent_by_peak(2))) == 2
+
+
 @pytest.mark.parametrize("end", [0, 1, 0.0, 1.0, sp.S.Zero, sp.S.One])
 def test_the_ends_of_a_range_belong_to_it(end):
     assert float(fresnel.schlick(0, end)) == 1 and float(fresnel.schlick(1, end)) == float(end)
@@ -67,7 +83,7 @@ def test_a_cosine_may_be_what_rounding_makes_it():
     assert masking.beckmann(1 + 2.0**-52, sp.Rational(1, 3)) == 1 and masking.beckmann(-0.5, 0.3) == 0
 
 
-@pytest.mark.parametrize("room", [fresnel, masking, sampling])
+@pytest.mark.parametrize("room", [distribution, fresnel, masking, roughness, sampling])
 def test_every_formula_is_held_and_keeps_its_signature_and_text(room):
     """`separable` takes a formula, which is held itself."""
     formulas = {

@@ -40,7 +40,8 @@ def takes(**ranges: Range) -> Callable[[Callable[Formula, Expr]], Callable[Formu
         @functools.wraps(formula)
         def checked(*args: Formula.args, **kwargs: Formula.kwargs) -> Expr:
             for name, value in signature.bind(*args, **kwargs).arguments.items():
-                _check(f"{formula.__name__}: {name}", value, ranges.get(name))
+                if value is not signature.parameters[name].default:
+                    _check(f"{formula.__name__}: {name}", value, ranges.get(name))
             return formula(*args, **kwargs)
 
         return checked
@@ -51,8 +52,8 @@ def takes(**ranges: Range) -> Callable[[Callable[Formula, Expr]], Callable[Formu
 def _check(what: str, value: object, within: Range | None) -> None:
     if isinstance(value, bool) or not isinstance(value, Expr | Real):
         raise RatfitError(
-            f"{what} has the type {type(value).__name__}: give a symbol, a sympy expression or a number; for arrays, lower the "
-            "formula with ratfit.lower and give the arrays to that"
+            f"{what} has the type {type(value).__name__}: give a symbol, a sympy expression or a number; "
+            "for arrays, lower the formula with ratfit.lower and give the arrays to that"
         )
     number = value if isinstance(value, Expr) else Float(float(value))
     if number.free_symbols:

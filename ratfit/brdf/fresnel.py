@@ -15,9 +15,9 @@ Accuracy in float64, in ulp of F itself, on two million places u in [0, 1] of ea
     nearly no surface, eta - 1 < 0.05 and kappa < 0.001          99.7 %      7.7
     eta < 1 and kappa < 1                                        99.97 %     8.7
 
-What is left above 4 is no rounding magnified: a dozen of half an ulp each that happen to add up. `lazanyi`, `index`,
-`spectral` and `schlick` are within 4, `normal` within 4.4. An exponential adds the error of its argument: for f = 0,
-5 ulp in `spherical_gaussian`, 14 in `karis` and `smoothie`; for f >= 0.01, 4 and 5.
+What is left above 4 is a dozen roundings of half an ulp that happen to add up; in the last two kinds one of them counts
+up to four times. `lazanyi`, `index`, `spectral` and `schlick` are within 4, `normal` within 4.4. An exponential adds the
+error of its argument: for f = 0, 5 ulp in `spherical_gaussian`, 14 in `karis` and `smoothie`; for f >= 0.01, 4 and 5.
 """
 
 from __future__ import annotations

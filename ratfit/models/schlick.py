@@ -7,8 +7,7 @@ three directional ones make the six models of schlick1994, which `SCHLICK` holds
 What is wrong in print: the A of Eq. 28 does not keep Eq. 27 (its square does), and Eq. 32 divides by 4 pi v v' what
 Eqs. 25 and 30 have divided already. What the right formulas cannot mend: every directional factor but the diffuser's
 reflects more than it receives at grazing angles (for r up to 0.1 even the facets alone, masked by Eq. 31), and so do
-two layers that conserve energy each, whose shares are taken at the half vector. `ratfit.models.conserving` mends one
-layer.
+two layers that conserve energy each, whose shares are taken at the half vector. `ratfit.models.conserving` mends both.
 """
 
 from __future__ import annotations

@@ -16,6 +16,7 @@ import pytest
 import sympy as sp
 
 import ratfit.claims
+from ratfit._parse import RatfitError
 from ratfit.brdf import distribution, fresnel, masking
 from ratfit.claims import (
     DOCUMENTS,
@@ -313,6 +314,21 @@ def test_words_select():
     assert [claim.id for claim in selected(["S-4.2-F1", "S-4.2-F0"])] == ["S-4.2-F0", "S-4.2-F1"]
     assert all(claim.id.startswith("S-4.2-") for claim in selected(["S-4.2"]))
     assert selected([]) == claims()
+
+
+@pytest.mark.parametrize(
+    ("name", "letters"),
+    [("schlick1994", "S"), ("Schlick", "S"), ("microfacet", "DP"), ("polimi2024", "PM"), ("POLIMI", "PM"),
+     ("smoothie", "SM")],
+)  # fmt: skip
+def test_documents_answer_to_their_names(name, letters):
+    assert selected([name]) == selected([letters]) != ()
+
+
+@pytest.mark.parametrize(("word", "near"), [("shlick", "'schlick'"), ("polimi2023", "'polimi2024'"), ("", "`ratfit")])
+def test_words_that_name_nothing_are_offered_the_nearest(word, near):
+    with pytest.raises(RatfitError, match=near):
+        selected([word])
 
 
 @pytest.fixture

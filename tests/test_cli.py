@@ -9,7 +9,6 @@ import pytest
 from ratfit._parse import parse_expression
 from ratfit._problem_file import read_problem
 from ratfit._problem_text import to_tables
-from ratfit.cli.claims import document_of
 from ratfit.gallery import card, cards
 
 SINE = ["sin(x)", "--on", "0", "pi/2", "--form", "2/1", "--value", "0", "--derivative", "0"]
@@ -464,15 +463,6 @@ def test_bench_says_where_a_target_is_infinite_and_keeps_its_remarks_with_the_er
     words = ["Abs(x - 1/3)", "--on", "0", "1", "--form", "2/0", "--value", "0", "--value", "1", "--derivative", "0"]
     status, out, _ = run("bench", *words, "--samples", "100000", "--backend", "none")
     assert status == 0 and "all but vanishes" in out
-
-
-@pytest.mark.parametrize(
-    ("word", "letters"),
-    [("schlick1994", "S"), ("Schlick", "S"), ("microfacet", "DP"), ("polimi2024", "PM"), ("POLIMI", "PM"),
-     ("smoothie", "SM"), ("S", None), ("S-28-A", None), ("", None)],
-)  # fmt: skip
-def test_documents_of_the_ledger_by_name(word, letters):
-    assert document_of(word) == letters
 
 
 def test_a_finished_row_leaves_no_state_and_nothing_to_compare_is_no_success(run, tmp_path):

@@ -74,8 +74,9 @@ def claims() -> tuple[Claim, ...]:
 def selected(words: Sequence[str]) -> tuple[Claim, ...]:
     """The claims that the words name, in the ledger's order; all of them for no words.
 
-    A word is an id (`S-28-A`), a document (`PM`), or how ids begin (`S-4.2`); capitals do not matter. **Fails** with
-    `RatfitError`, offering the nearest, for a word that names nothing.
+    A word is an id (`S-28-A`), how ids begin (`S-4.2`), or a document by its letters (`PM`) or its name, with the year
+    or without (`polimi2024`); capitals do not matter. **Fails** with `RatfitError`, offering the nearest, for a word
+    that names nothing.
     """
     ledger = claims()
     chosen = {claim.id for word in words for claim in _named(word, ledger)}
@@ -83,10 +84,17 @@ def selected(words: Sequence[str]) -> tuple[Claim, ...]:
 
 
 def _named(word: str, ledger: Sequence[Claim]) -> Iterator[Claim]:
-    wanted = word.casefold()
+    letters = _letters()
+    wanted = letters.get(word.casefold(), word).casefold()
     found = [c for c in ledger if c.id.casefold() == wanted or c.id.casefold().startswith(f"{wanted}-")]
     if not found:
-        known = [*DOCUMENTS, *(claim.id for claim in ledger)]
+        known = [*DOCUMENTS, *letters, *(claim.id for claim in ledger)]
         remedy = nearest(word, known) or "; `ratfit claims` lists all, `ratfit claims PM` those of one source"
         raise RatfitError(f"no claim {word!r}{remedy}")
     yield from found
+
+
+def _letters() -> dict[str, str]:
+    """The letters of every document by its name, with the year and without: the names end the titles."""
+    names = {title.rpartition("(")[2].rstrip(")"): letters for letters, title in DOCUMENTS.items()}
+    return {name.rstrip("0123456789"): letters for name, letters in names.items()} | names

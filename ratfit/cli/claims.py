@@ -28,7 +28,7 @@ def claims(words: tuple[str, ...], format_: str, measure: bool, out: str | None)
     from ratfit.report.claims import claims_json, claims_markdown, claims_text
 
     check_places(out)
-    chosen = selected([document_of(word) or word for word in words])
+    chosen = selected(words)
     decisions = []
     for number, claim in enumerate(chosen, 1):
         with waiting(f"{number}/{len(chosen)}: deciding {claim.id} (Ctrl-C stops)"):
@@ -36,12 +36,3 @@ def claims(words: tuple[str, ...], format_: str, measure: bool, out: str | None)
     written = {"text": claims_text, "json": claims_json, "markdown": claims_markdown}[format_](decisions)
     write(written, out)
     return 0
-
-
-def document_of(word: str) -> str | None:
-    """The letters of the document that has this name, with its year or without; the names end the ledger's titles."""
-    from ratfit.claims import DOCUMENTS
-
-    names = {letters: title.rpartition("(")[2].rstrip(")") for letters, title in DOCUMENTS.items()}
-    wanted = word.casefold()
-    return next((each for each, name in names.items() if wanted in (name, name.rstrip("0123456789"))), None)

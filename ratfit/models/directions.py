@@ -99,14 +99,21 @@ def cosines(view: Any, light: Any) -> tuple[Any, ...]:
     # Coordinate by coordinate, each function once: so XLA makes one loop of it all, which is twice as fast.
     x, y, z = (view[..., axis] + light[..., axis] for axis in range(3))
     across = x * x + y * y
-    length = _where_above(numpy, SHORT**2, across + z * z, numpy.sqrt, 0)
-    one_over = _where_above(numpy, SHORT, length, lambda known: 1 / known, 0)
-    t = numpy.maximum(z * one_over, 0)
-    sine2 = _where_above(numpy, SHORT, length, lambda known: across * one_over * one_over, 1)
-    w2 = _where_above(numpy, SHORT**2, across, lambda known: x * x / known, 1)
-    w = _where_above(numpy, SHORT**2, across, lambda known: abs(x) / numpy.sqrt(known), 1)
+    squared = across + z * z
+    short = max(SHORT**2, float(numpy.finfo(squared.dtype).tiny))
+    length = numpy.sqrt(_at_least(numpy, short, squared))
+    one_over = 1 / length
+    t = _at_least(numpy, 0, z) * one_over
+    sine2 = numpy.where(squared > short, across * one_over * one_over, 1).astype(t.dtype)
+    w2 = _where_above(numpy, short, across, lambda known: x * x / known, 1)
+    w = _where_above(numpy, short, across, lambda known: abs(x) / numpy.sqrt(known), 1)
     v, v_prime = numpy.broadcast_arrays(view[..., 2], light[..., 2])
     return *(_at_most_one(numpy, cosine) for cosine in (t, length / 2, v, v_prime, w)), sine2, w2
+
+
+def _at_least(numpy: Any, least: float, values: Any) -> Any:
+    """The values, and the least one in place of those below it, which have no gradient then."""
+    return numpy.where(values > least, values, least).astype(values.dtype)
 
 
 def _at_most_one(numpy: Any, cosine: Any) -> Any:

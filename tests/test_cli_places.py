@@ -28,6 +28,7 @@ def place(tmp_path, monkeypatch):
     (tmp_path / "folder.svg").mkdir()
     (tmp_path / "file").write_text("")
     (tmp_path / "link.svg").symlink_to(tmp_path / "gone" / "a.svg")
+    (tmp_path / "circle.svg").symlink_to(tmp_path / "circle.svg")
     return tmp_path
 
 
@@ -41,6 +42,7 @@ def place(tmp_path, monkeypatch):
         ("file/b/a.svg", "file is a file and no folder"),
         ("a" * 300 + ".svg", "too long"),
         ("link.svg", "there is no folder"),
+        ("circle.svg", "Too many levels of symbolic links"),
     ],
     ids=lambda text: text[:12],
 )
@@ -79,6 +81,14 @@ def test_what_the_system_refuses_is_said(place, monkeypatch, refusal, fragment):
     with pytest.raises(RatfitError, match=fragment) as told:
         check_place("--out", "new.json")
     assert str(told.value).startswith("--out new.json: ") and "another place" in str(told.value)
+
+
+def test_a_folder_that_was_removed_under_the_command(tmp_path, monkeypatch):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    (tmp_path / "here").rmdir()
+    with pytest.raises(RatfitError, match="takes no files"):
+        check_place("--out", "new.json")
 
 
 def test_places_that_take_a_file(place):

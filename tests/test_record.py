@@ -165,18 +165,46 @@ def test_a_link_keeps_pointing_and_a_device_stays_a_device(tmp_path):
     assert Path("/dev/null").is_char_device()
 
 
-@pytest.mark.parametrize("write", [lambda path: write_text(path, "text"), lambda path: append_row(path, RECORD)])
-def test_places_that_cannot_be_written_are_refused(write, tmp_path):
+WRITERS = [lambda path: write_text(path, "text"), lambda path: append_row(path, RECORD)]
+
+
+@pytest.mark.parametrize("write", WRITERS)
+@pytest.mark.parametrize(
+    ("name", "fragment"),
+    [
+        ("missing/page.md", "there is no folder .*missing; make it first"),
+        (".", "is a folder; name a file in it"),
+        ("file/page.md", "file is a file and no folder"),
+        ("file/deeper/page.md", "file is a file and no folder"),
+        ("n" * 300, "name too long; choose another place"),
+        ("astray", "there is no folder .*gone; make it first"),
+        ("circle", "Too many levels of symbolic links; choose another place"),
+    ],
+    ids=lambda text: text[:20],
+)
+def test_places_that_cannot_be_written_are_refused(write, name, fragment, tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(RatfitError, match=r"there is no folder .*missing"):
-        write(tmp_path / "missing" / "page.md")
-    with pytest.raises(RatfitError, match="is a folder"):
-        write(tmp_path)
-    with pytest.raises(RatfitError, match="Not a directory"):
-        write(tmp_path / "file" / "page.md")
-    with pytest.raises(RatfitError, match="name too long"):
-        write(tmp_path / ("n" * 300))
-    assert names(tmp_path) == ["file"]
+    (tmp_path / "astray").symlink_to(tmp_path / "gone" / "page.md")
+    (tmp_path / "circle").symlink_to(tmp_path / "round")
+    (tmp_path / "round").symlink_to(tmp_path / "circle")
+    before = names(tmp_path)
+    with pytest.raises(RatfitError, match=fragment):
+        write(tmp_path / name)
+    assert names(tmp_path) == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc and /dev/full")
+@pytest.mark.parametrize(
+    ("write", "place", "fragment"),
+    [
+        (WRITERS[0], "/proc/page.md", "the folder /proc takes no files"),
+        (WRITERS[1], "/proc/rows.jsonl", "the folder /proc takes no files"),
+        (WRITERS[0], "/dev/full", "No space left on device; choose another place"),
+    ],
+)
+def test_a_folder_that_is_there_is_not_said_to_be_missing(write, place, fragment):
+    with pytest.raises(RatfitError, match=fragment):
+        write(place)
 
 
 def test_a_refusal_by_the_system_is_explained(tmp_path, monkeypatch):
@@ -184,9 +212,21 @@ def test_a_refusal_by_the_system_is_explained(tmp_path, monkeypatch):
         raise PermissionError
 
     monkeypatch.setattr(Path, "replace", refused)
-    with pytest.raises(RatfitError, match="no permission"):
+    with pytest.raises(RatfitError, match=r"page\.md: no permission to do that there; choose another place"):
         write_text(tmp_path / "page.md", "text")
     assert names(tmp_path) == []
+
+
+def test_a_file_that_may_not_be_read_is_not_said_to_be_unwritable(tmp_path, monkeypatch):
+    (tmp_path / "rows.jsonl").write_bytes(LINE)
+
+    def refused(*_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", refused)
+    with pytest.raises(RatfitError) as told:
+        read_rows(tmp_path / "rows.jsonl")
+    assert "no permission" in str(told.value) and "write" not in str(told.value)
 
 
 # --- Files of rows ---

@@ -9,6 +9,7 @@ from ratfit._record.compare import compare as compare
 from ratfit._record.files import write_bytes as write_bytes
 from ratfit._record.files import write_text as write_text
 from ratfit._record.machine import machine as machine
+from ratfit._record.place import unwritable as unwritable
 from ratfit._record.resume import check_resumable as check_resumable
 from ratfit._record.resume import same_measurement as same_measurement
 from ratfit._record.row import FURTHER as FURTHER

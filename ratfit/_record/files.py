@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ratfit._parse import RatfitError
+from ratfit._record.place import unwritable, where_links_lead
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
@@ -29,7 +30,7 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
         if file.exists() and not file.is_file():
             file.write_bytes(data)  # /dev/stdout, say: nothing may be moved into its place
         else:
-            _replace(file.resolve(), data)  # of a link its target is replaced, not the link
+            _replace(where_links_lead(file), data)  # of a link its target is replaced, not the link
 
 
 def _replace(path: Path, data: bytes) -> None:
@@ -89,11 +90,12 @@ def explained(path: str | os.PathLike[str]) -> Iterator[None]:
     """Turns what the operating system refuses into one line that says the remedy."""
     try:
         yield
-    except FileNotFoundError:
-        raise RatfitError(f"{path}: there is no folder {Path(path).parent}; make it first") from None
-    except IsADirectoryError:
-        raise RatfitError(f"{path} is a folder: name a file in it") from None
-    except PermissionError:
-        raise RatfitError(f"{path}: no permission to write there; choose another place") from None
     except OSError as refused:
-        raise RatfitError(f"{path}: {refused.strerror or refused}; choose another place") from None
+        raise RatfitError(f"{path}: {unwritable(path) or _told(refused)}") from None
+
+
+def _told(refused: OSError) -> str:
+    """What to say of a place that seems to take files: a file there that may not be touched, a disk that is full."""
+    if isinstance(refused, PermissionError):
+        return "no permission to do that there; choose another place"
+    return f"{refused.strerror or refused}; choose another place"

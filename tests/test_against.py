@@ -388,6 +388,14 @@ def test_the_text_has_a_headline_and_the_worst_first():
     assert got_worse(found)
 
 
+def test_a_row_without_a_backend_is_told_without_a_gap():
+    untimed = replace(RECORD, **UNTIMED, backend="", gamma=None)
+    found = compare(rows(untimed, replace(untimed, name="old")), rows(of_epsilon(untimed, peak_mean=0.011)))
+    *_, line, _, _, gone = against_text(found).split("\n")
+    assert " ".join(line.split()) == "worse smith m=0.2 10,000 uniform float32 - eps peak_mean 0.01 0.011 +10 %"
+    assert gone == "  in the old rows alone: old m=0.2 (float32, 10,000 samples)"
+
+
 def test_what_could_not_be_compared_is_gathered_by_its_reason():
     settings = [replace(RECORD, parameters={"m": m}) for m in (0.1, 0.2, 0.3)]
     found = compare(rows(*settings), rows(*(replace(each, machine={**MACHINE, "cores": 4}) for each in settings)))

@@ -67,7 +67,7 @@ def _cells(change: Change) -> tuple[str, ...]:
     row = change.row
     return (
         change.verdict, row["name"], parameters(row), f"{row['samples']:,}", row["sampling"], row["dtype"],
-        row["backend"], change.quantity, *_told_apart(change.old, change.new), _share(change), change.why,
+        row["backend"] or "-", change.quantity, *_told_apart(change.old, change.new), _share(change), change.why,
     )  # fmt: skip
 
 
@@ -119,7 +119,8 @@ def _aside(changes: Sequence[Change], verdict: str) -> Iterator[str]:
 
 def _label(row: Mapping[str, Any]) -> str:
     values = parameters(row)
-    return f"{row['name']}{values and ' '}{values} ({row['dtype']}, {row['backend']}, {row['samples']:,} samples)"
+    how = [row["dtype"], row["backend"], f"{row['samples']:,} samples"]  # no backend: nothing was timed
+    return f"{row['name']}{values and ' '}{values} ({', '.join(filter(None, how))})"
 
 
 def _some(names: Sequence[str]) -> str:

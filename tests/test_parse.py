@@ -217,6 +217,17 @@ REFUSED = {
     "2(x + 1)": "write 2*(",
     "x y": "write x*y",
     "(x)(y)": "write )*(",
+    "sin x": "column 5, 'x': a function needs its argument in parentheses; write sin(x)",
+    "x + sin 2": "write sin(2)",
+    "sin 2*x": "write sin(...)",
+    "sin x + 1": "write sin(...)",
+    "sin cos(x)": "write sin(...)",
+    "atan2 x": "write atan2(...)",
+    "clamp x": "write clamp(...)",
+    "2 sin(x)": "write 2*sin(...) for a product",
+    "x sin": "write x*sin(...) for a product",
+    "ln x": "there is no such function; write log(x)",
+    "Log10 2": "write log(x)/log(10)",
     "x(y)": "write x*(...)",
     "pi(2)": "write pi*(...)",
     "1_000": "without underscores",
@@ -342,6 +353,11 @@ def test_refused(text):
     assert REFUSED[text] in message
     assert message.startswith("condition 2, at")
     assert message.isprintable() and len(message) < 300
+
+
+def test_a_declared_name_is_no_function_of_other_languages():
+    with pytest.raises(ParseError, match=r"write ln\*x for a product"):
+        parse_expression("ln x", {"ln": p, "x": x})
 
 
 def test_no_text_is_in_both_tables():

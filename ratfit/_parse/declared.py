@@ -17,7 +17,7 @@ from ratfit._parse.limits import MAX_LENGTH, MAX_SIZE
 from ratfit._parse.names import nearest
 from ratfit._parse.node import Node, bounded
 from ratfit._parse.reading import current_reading
-from ratfit._parse.remedies import NO_PYTHON
+from ratfit._parse.remedies import NO_PYTHON, argument_remedy
 from ratfit._parse.veil import is_short, veiled
 
 
@@ -35,7 +35,7 @@ def _declared(name: str) -> sp.Expr:
     if name in NOT_REAL:
         raise Refusal(NOT_REAL[name])
     if name in FUNCTIONS:
-        raise Refusal(f"a function needs its argument in parentheses; write {name}(...)")
+        raise Refusal(argument_remedy(name))
     if keyword.iskeyword(name):
         raise Refusal(NO_PYTHON)
     if name not in names and name.endswith("'"):

@@ -58,7 +58,7 @@ def read(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
         raise Refusal(character_remedy(text[at]), at, at + 1) from None
     except UnexpectedToken as error:
         at = len(text.rstrip()) if error.token.type == "$END" else error.token.start_pos
-        remedy = token_remedy(text[:at].rstrip(), error.token, error.expected)
-        raise Refusal(remedy, at, at + len(error.token)) from None
+        end = at + len(error.token)
+        raise Refusal(token_remedy(text[:at].rstrip(), error.token, text[end:], error.expected), at, end) from None
     finally:
         current_reading.reset(token)

@@ -8,7 +8,9 @@ import unicodedata
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
-from ratfit._parse.functions import NOT_REAL
+from ratfit._parse.functions import FUNCTIONS, NOT_REAL
+from ratfit._parse.limits import MAX_NAME
+from ratfit._parse.reading import current_reading
 
 if TYPE_CHECKING:
     from lark import Token
@@ -65,8 +67,13 @@ def character_remedy(character: str) -> str:
     return f"write the letter's name, {greek[1].lower()}" if greek else "write ASCII letters, digits and signs"
 
 
-def token_remedy(before: str, token: Token, expected: Collection[str]) -> str:
-    """What to do about a token after the text before it; `expected` are the kinds that the grammar allows there."""
+def argument_remedy(name: str, argument: str = "...") -> str:
+    """What to do about the name of a function without parentheses."""
+    return f"a function needs its argument in parentheses; write {name}({argument})"
+
+
+def token_remedy(before: str, token: Token, after: str, expected: Collection[str]) -> str:
+    """What to do about a token between two texts; `expected` are the kinds that the grammar allows there."""
     word = re.search(r"\w*$", before)[0]  # type: ignore[index]
     if keyword.iskeyword(token) or keyword.iskeyword(word):
         return NO_PYTHON
@@ -75,8 +82,20 @@ def token_remedy(before: str, token: Token, expected: Collection[str]) -> str:
     if token.type == "$END":
         return "a closing parenthesis is missing"
     if token.type in ("NAME", "NUMBER", "LPAR"):
-        return _juxtaposed(before, token)
+        return _uncalled(before, token, after) or _juxtaposed(before, token)
     return _SIGNS[","] if token == "," else "no parenthesis is open here; leave it out"
+
+
+def _uncalled(before: str, token: Token, after: str) -> str:
+    """What to do about `sin x`; nothing where no function stands before the token."""
+    name = re.search(r"\w*$", before)[0]  # type: ignore[index]
+    if name in FUNCTIONS:
+        # how far the argument of sin 2*x goes, nobody knows
+        is_argument = not after.strip() and token not in FUNCTIONS and len(token) <= MAX_NAME
+        return argument_remedy(name, token if is_argument and 1 in FUNCTIONS[name][1] else "...")
+    if name.lower() in ELSEWHERE and name not in current_reading.get().names:
+        return f"there is no such function; write {ELSEWHERE[name.lower()]}"
+    return ""
 
 
 def _juxtaposed(before: str, token: Token) -> str:
@@ -88,4 +107,4 @@ def _juxtaposed(before: str, token: Token) -> str:
     if number and number[0] == "0" and token[0].lower() in "xob":
         return "write the number in decimal digits"
     left = re.search(r"[\w.]+$|.$", before)[0]  # type: ignore[index]
-    return f"write {left[-12:]}*{token[:12]} for a product"
+    return f"write {left[-12:]}*{token[:12]}{'(...)' if token in FUNCTIONS else ''} for a product"

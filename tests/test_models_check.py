@@ -259,3 +259,11 @@ def test_command_refuses_bad_input_in_one_line(run, arguments, fragment):
 def test_checks_with_unknown_parameters_fail_before_the_work():
     with pytest.raises(RatfitError, match="albedo"):
         check(MODELS["lambert"], {"r": 0.3})
+    with pytest.raises(RatfitError, match="albedo"):
+        check("lambert", {"r": 0.3})
+
+
+@pytest.mark.parametrize(("model", "said"), [("lamber", "did you mean 'lambert'"), (3, "3 is no model")])
+def test_what_is_no_model_is_not_checked(model, said):
+    with pytest.raises(RatfitError, match=said):
+        check(model)

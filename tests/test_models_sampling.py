@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from ratfit import models
 from ratfit._parse import RatfitError
 from ratfit.models import MODELS, Model
 from ratfit.models.albedo import albedo, angles, monte_carlo_albedo
@@ -256,12 +257,43 @@ def test_jax_draws_what_numpy_draws():
         (lambda: albedo(LAMBERT, "0.5"), "real numbers"),
         (lambda: albedo(LAMBERT, [0.5], tolerance=0), "tolerance = 0: give a number above 0"),
         (lambda: angles(0), "count = 0: give a whole number from 1 on"),
-        (lambda: monte_carlo_albedo(LAMBERT, [0.5], sampler="ggx"), "sampler = 'ggx'"),
+        (lambda: monte_carlo_albedo(LAMBERT, [0.5], sampler="gxg"), "did you mean 'ggx'"),
+        (lambda: monte_carlo_albedo(LAMBERT, [0.5], sampler=LAMBERT), "is no sampler: give one, or its name"),
+        (lambda: weight(3, LAMBERT, facing(0.1), facing(0.2)), "3 is no sampler"),
     ],
 )
 def test_bad_input_is_said(call, fragment):
     with pytest.raises(RatfitError, match=fragment):
         call()
+
+
+ASKED_OF_A_MODEL = {
+    "named": models.named,
+    "sampler_for": sampler_for,
+    "weight": lambda model: weight(GGX, model, facing(0.1), facing(0.2)),
+    "Blend.weight": lambda model: ANY.weight(model, facing(0.1), facing(0.2)),
+    "albedo": lambda model: albedo(model, [0.5]).values[0],
+    "monte_carlo_albedo": lambda model: monte_carlo_albedo(model, [0.5], samples=100).values[0],
+}
+
+
+@pytest.mark.parametrize("asked", ASKED_OF_A_MODEL)
+def test_a_model_may_be_given_by_its_name(asked):
+    ask = ASKED_OF_A_MODEL[asked]
+    assert ask("lambert") == ask(LAMBERT)
+    listed = f"`ratfit check-model` lists the {len(MODELS)} models"
+    with pytest.raises(RatfitError, match=f"no model 'lamber'; did you mean 'lambert'. {listed}$"):
+        ask("lamber")
+    for other in (3, None, ["lambert"], GGX):
+        with pytest.raises(RatfitError, match=rf" is no model: give one, or its name; {listed}$") as told:
+            ask(other)
+        assert len(str(told.value)) < 160 and str(told.value).isprintable()
+
+
+def test_a_sampler_may_be_given_by_its_name():
+    assert named("ggx") is named(GGX) is GGX
+    by_name, itself = (monte_carlo_albedo(LAMBERT, [0.5], sampler=each, samples=100) for each in ("ggx", GGX))
+    assert by_name.values[0] == itself.values[0]
 
 
 def test_a_sampler_alone_draws_as_a_blend_of_it():

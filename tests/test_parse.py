@@ -23,6 +23,7 @@ from ratfit._parse import (
     ParseError,
     RatfitError,
     check_name,
+    named_in,
     nearest,
     parse_expression,
 )
@@ -415,6 +416,24 @@ def test_nearest():
     assert nearest("betas", ["eta", "zeta", "beta"]) == "; did you mean 'beta', 'eta' or 'zeta'?"
     assert nearest("qqq", ["smith"]) == nearest("x", []) == ""
     assert nearest("x" * 100_000, ["smith"]) == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("ona", "no boat 'ona'; did you mean 'one'? the port lists the 2 boats"),
+        ("q", "no boat 'q'; the port lists the 2 boats"),
+        ("", "no boat ''; the port lists the 2 boats"),
+        ("q\n" * 99, "...'; the port"),
+        (1, "1 is no boat: give one, or its name; the port lists the 2 boats"),
+        ({}, "{} is no boat: give one"),
+    ],
+)
+def test_a_name_among_many(name, said):
+    assert named_in({"one": 1, "two": 2}, "two", "boat", "the port") == 2
+    with pytest.raises(RatfitError) as told:
+        named_in({"one": 1, "two": 2}, name, "boat", "the port")
+    assert said in str(told.value) and str(told.value).isprintable()
 
 
 # Inputs that once took long, or would: each was found by a search or by reading sympy

@@ -24,5 +24,6 @@ from ratfit._parse.functions import RESERVED as RESERVED
 from ratfit._parse.limits import MAX_DEPTH as MAX_DEPTH
 from ratfit._parse.limits import MAX_LENGTH as MAX_LENGTH
 from ratfit._parse.names import check_name as check_name
+from ratfit._parse.names import named_in as named_in
 from ratfit._parse.names import nearest as nearest
 from ratfit._parse.parse import parse_expression as parse_expression

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
+from typing import TypeVar
 
-from ratfit._parse.errors import RatfitError, quote
+from ratfit._parse.errors import RatfitError, quote, shortened
 from ratfit._parse.functions import RESERVED
 from ratfit._parse.limits import MAX_NAME
+
+Named = TypeVar("Named")
 
 
 def check_name(name: str, what: str) -> str:
@@ -33,3 +36,17 @@ def nearest(word: str, known: Iterable[str]) -> str:
     quoted = [quote(by_lower[name]) for name in near]
     listed = " or ".join(part for part in (", ".join(quoted[:-1]), *quoted[-1:]) if part)
     return f"; did you mean {listed}?" if listed else ""
+
+
+def named_in(known: Mapping[str, Named], name: object, what: str, lister: str) -> Named:
+    """What bears a name among many.
+
+    **Arguments:** `what` they are, in one word, and the `lister`, where a person finds all their names.
+    **Fails** with `RatfitError`, which offers the nearest, for another name, and for what is no name.
+    """
+    lists = f"{lister} lists the {len(known)} {what}s"
+    if not isinstance(name, str):
+        raise RatfitError(f"{shortened(repr(name), 40)} is no {what}: give one, or its name; {lists}")
+    if name not in known:
+        raise RatfitError(f"no {what} {quote(name)}{nearest(name, known) or ';'} {lists}")
+    return known[name]

@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from ratfit._inline import settings_of
-from ratfit._parse import RatfitError, nearest
+from ratfit._parse import RatfitError
 from ratfit.cli.options import Number, check_places, numbers, write
 from ratfit.plot.write import write_picture
 from ratfit.report.progress import waiting
@@ -33,7 +33,7 @@ def check_model(model: str | None, **options: Any) -> int:
     A law is searched over the ranges of the parameters, those of --set kept: one that holds was not seen to fail.
     Exit status: 0 all laws hold, 1 one fails or is left undecided, 2 bad input.
     """
-    from ratfit.models import MODELS
+    from ratfit.models import MODELS, named
     from ratfit.report.model_check import check_json, check_text, models_json, models_text
 
     check_places(options["out"], options["plot"])
@@ -43,10 +43,7 @@ def check_model(model: str | None, **options: Any) -> int:
         _only_listed(options)
         write(models_json(MODELS) if options["format_"] == "json" else models_text(MODELS), options["out"])
         return 0
-    if model not in MODELS:
-        near = nearest(model, MODELS) or ";"
-        raise RatfitError(f"no model {model!r}{near} `ratfit check-model` lists the {len(MODELS)} models")
-    found, fixed = MODELS[model], numbers(settings_of(options["fixed"]))
+    found, fixed = named(model), numbers(settings_of(options["fixed"]))
     with waiting(f"measuring {model}, for half a minute or so (Ctrl-C stops)"):
         from ratfit.models.check import check
 

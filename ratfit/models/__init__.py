@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from ratfit._parse import RatfitError, nearest
+from ratfit._parse import named_in
 from ratfit.models._model import Model as Model
 from ratfit.models.blinn import BLINN, BLINN_AS_PRINTED
 from ratfit.models.conserving import CONSERVING
@@ -52,8 +52,6 @@ MODELS: Mapping[str, Model] = MappingProxyType(
 """Every model by its name."""
 
 
-def named(name: str) -> Model:
-    """The model of that name. **Fails** with `RatfitError`, which says the nearest name."""
-    if name not in MODELS:
-        raise RatfitError(f"no model {name!r}{nearest(name, MODELS)}; there are: {', '.join(MODELS)}")
-    return MODELS[name]
+def named(model: str | Model) -> Model:
+    """The model of that name; a model is itself. **Fails** with `RatfitError`, which says the nearest names."""
+    return model if isinstance(model, Model) else named_in(MODELS, model, "model", "`ratfit check-model`")

@@ -16,10 +16,11 @@ import numpy as np
 
 from ratfit._lower import lower
 from ratfit._parse import RatfitError
+from ratfit.models import named
 from ratfit.models._half_sphere import Nodes, facet_nodes, light_nodes, views
 from ratfit.models._model import Model
 from ratfit.models.directions import LETTERS, W, as_floats
-from ratfit.models.samplers import Blend, Sampler, sampler_for
+from ratfit.models.samplers import Blend, Sampler, as_blend, sampler_for
 
 ANGLES = 64
 TOLERANCE = 1e-4
@@ -51,20 +52,22 @@ def angles(count: int = ANGLES) -> Any:
 
 
 def albedo(
-    model: Model, cosines: Any = None, *, azimuth: float = 0.0, tolerance: float = TOLERANCE, **values: Any
+    model: str | Model, cosines: Any = None, *, azimuth: float = 0.0, tolerance: float = TOLERANCE, **values: Any
 ) -> Albedo:
     """The directional albedo by quadrature, with the coherent share.
 
-    **Arguments:** `cosines` of the view to the normal, in (0, 1], those of `angles()` where left out; `azimuth` of the
-    view against the tangent, in radians; `tolerance`, the error at which an angle is done; `values`, one number for
-    each parameter, those left out at their defaults.
+    **Arguments:** `model`, or its name; `cosines` of the view to the normal, in (0, 1], those of `angles()` where left
+    out; `azimuth` of the view against the tangent, in radians; `tolerance`, the error at which an angle is done;
+    `values`, one number for each parameter, those left out at their defaults.
 
     **Returns** the albedos. Each error is the change that came with the last doubling of the nodes, along half vectors
     or along the light's own angles, whichever changes less; it stays above the tolerance where a model jumps (a
     threshold), has no integral, or has a lobe narrower than a ten-thousandth of a radian. An estimate, not a bound:
     where a model jumps the error may be several times as great.
-    **Fails** with `RatfitError` for cosines outside (0, 1] and for parameters that are not one number.
+    **Fails** with `RatfitError` for a name of no model, for cosines outside (0, 1] and for parameters that are not one
+    number.
     """
+    model = named(model)
     cosines, known = _checked(model, cosines, azimuth, values)
     if not tolerance > 0:
         raise RatfitError(f"tolerance = {tolerance}: give a number above 0")
@@ -87,23 +90,24 @@ def albedo(
 
 
 def monte_carlo_albedo(
-    model: Model,
+    model: str | Model,
     cosines: Any = None,
     *,
     samples: int = 20_000,
     seed: int = 0,
     azimuth: float = 0.0,
-    sampler: Sampler | Blend | None = None,
+    sampler: str | Sampler | Blend | None = None,
     **values: Any,
 ) -> Albedo:
     """The same by importance sampling, with one standard deviation for each angle.
 
     **Arguments:** as in `albedo`; `samples` for each angle, two at least, for a deviation needs two; `seed`; `sampler`,
-    that of `sampler_for` where left out.
+    or its name, that of `sampler_for` where left out.
     """
+    model = named(model)
     cosines, known = _checked(model, cosines, azimuth, values)
     samples, seed = _whole(samples, "samples", 2), _whole(seed, "seed", 0)
-    sampler = _drawing(model, sampler)
+    sampler = sampler_for(model) if sampler is None else as_blend(sampler)
     random = np.random.default_rng(seed)
     means, deviations = [], []
     for view in views(cosines, azimuth)[:, None, :]:
@@ -112,14 +116,6 @@ def monte_carlo_albedo(
             means.append(weights.mean())
             deviations.append(weights.std(ddof=1) / math.sqrt(samples))
     return Albedo(cosines, np.array(means) + _coherent(model, cosines, known), np.array(deviations))
-
-
-def _drawing(model: Model, sampler: Any) -> Blend:
-    if sampler is None:
-        return sampler_for(model)
-    if not isinstance(sampler, Sampler | Blend):
-        raise RatfitError(f"sampler = {sampler!r}: give one of ratfit.models.samplers.SAMPLERS, or leave it out")
-    return sampler if isinstance(sampler, Blend) else Blend(((sampler, {}),))
 
 
 def _whole(number: Any, name: str, least: int) -> int:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ratfit.models import named
 from ratfit.models._model import Model
 from ratfit.models.albedo import Albedo, albedo, angles, monte_carlo_albedo
 from ratfit.models.laws import FAILS, UNDECIDED, Law
@@ -38,16 +39,17 @@ class Check:
         return all(law.verdict not in (FAILS, UNDECIDED) for law in self.laws)
 
 
-def check(model: Model, fixed: Mapping[str, float] | None = None, *, seed: int = 0) -> Check:
+def check(model: str | Model, fixed: Mapping[str, float] | None = None, *, seed: int = 0) -> Check:
     """Measures the laws of a model.
 
-    **Arguments:** `fixed`, parameters by name that keep their value while the others range over theirs; `seed` of all
-    that is random. The albedo and the samples are those of the fixed parameters and the defaults of the others.
+    **Arguments:** `model`, or its name; `fixed`, parameters by name that keep their value while the others range over
+    theirs; `seed` of all that is random. The albedo and the samples are those of the fixed parameters and the defaults
+    of the others.
 
     **Returns** the record. A search is no proof: a law that holds was not seen to fail.
-    **Fails** with `RatfitError` for a parameter that is unknown or outside its range.
+    **Fails** with `RatfitError` for a name of no model, and for a parameter that is unknown or outside its range.
     """
-    fixed = dict(fixed or {})
+    model, fixed = named(model), dict(fixed or {})
     setting: dict[str, Any] = {name: float(value) for name, value in model.settings(fixed).items()}
     shown = albedo(model, **setting)
     drawn = monte_carlo_albedo(model, angles()[::EVERY], seed=seed, **setting)

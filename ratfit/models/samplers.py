@@ -10,9 +10,10 @@ from typing import Any
 import sympy as sp
 
 from ratfit._lower import lower
-from ratfit._parse import RatfitError, nearest
+from ratfit._parse import RatfitError, named_in
 from ratfit._target import Parameter, parameter
 from ratfit.brdf import distribution, roughness, sampling
+from ratfit.models import named as model_named
 from ratfit.models._model import Formula, Model
 from ratfit.models.directions import SINE2, V_PRIME, T, U, W, as_directions, library, traced
 
@@ -95,19 +96,19 @@ class Blend:
         densities = (s.density(view, light, **_own(s, stated, values)) for s, stated in self.parts)
         return sum(densities) / len(self.parts)
 
-    def weight(self, model: Model, view: Any, light: Any, **values: Any) -> Any:
+    def weight(self, model: str | Model, view: Any, light: Any, **values: Any) -> Any:
         """As the function `weight`; the mean of the weights is the albedo."""
         return weight(self, model, view, light, **values)
 
 
-def weight(sampler: Sampler | Blend, model: Model, view: Any, light: Any, **values: Any) -> Any:
+def weight(sampler: str | Sampler | Blend, model: str | Model, view: Any, light: Any, **values: Any) -> Any:
     """What a sample counts: a model's reflectance times the cosine to the light over a sampler's density.
 
-    0 below the horizon. **Arguments:** `values`, the model's parameters; the sampler takes those it has by name.
+    0 below the horizon. **Arguments:** a sampler and a model, or their names; `values`, the model's parameters; the
+    sampler takes those it has by name.
     """
-    view, light = as_directions(view, "view"), as_directions(light, "light")
-    blend = sampler if isinstance(sampler, Blend) else Blend(((sampler, {}),))
-    density = blend.density(view, light, **values)
+    model, view, light = model_named(model), as_directions(view, "view"), as_directions(light, "light")
+    density = as_blend(sampler).density(view, light, **values)
     value = model(view, light, **values)
     _, numpy = library(density, value)
     drawn = density > 0
@@ -216,13 +217,19 @@ ANY = Blend(((COSINE, {}), *((GGX, {"alpha": alpha}) for alpha in (0.3, 0.03, 0.
 """Draws for any model, as a diffuse surface and as facets of three roughnesses would."""
 
 
-def named(name: str) -> Sampler:
-    """The sampler of that name. **Fails** with `RatfitError`, which says the nearest name."""
-    if name not in SAMPLERS:
-        raise RatfitError(f"no sampler {name!r}{nearest(name, SAMPLERS)}; there are: {', '.join(SAMPLERS)}")
-    return SAMPLERS[name]
+def named(sampler: str | Sampler) -> Sampler:
+    """The sampler of that name; a sampler is itself. **Fails** with `RatfitError`, which says the nearest names."""
+    if isinstance(sampler, Sampler):
+        return sampler
+    return named_in(SAMPLERS, sampler, "sampler", "ratfit.models.samplers.SAMPLERS")
 
 
-def sampler_for(model: Model) -> Blend:
+def as_blend(sampler: str | Sampler | Blend) -> Blend:
+    """A sampler, or that of the name, as a blend of it alone; a blend is itself."""
+    return sampler if isinstance(sampler, Blend) else Blend(((named(sampler), {}),))
+
+
+def sampler_for(model: str | Model) -> Blend:
     """The model's own sampler and the cosine in equal shares; `ANY` for a model that has none."""
-    return ANY if model.sampler is None else Blend(((COSINE, {}), (named(model.sampler), {})))
+    own = model_named(model).sampler
+    return ANY if own is None else Blend(((COSINE, {}), (named(own), {})))

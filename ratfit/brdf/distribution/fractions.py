@@ -66,7 +66,8 @@ def smoothie(t: Expr, alpha: Expr, sine_squared: Expr | None = None) -> Expr:
     alpha >= 0; it is `ggx` with alpha_g^2 = alpha^2/(4 + alpha^2). A Dirac at alpha = 0.
     Source: smoothie, with the factor that it leaves out.
     """
-    return lobe_above(t, alpha < SMOOTH, dirac(t), (4 + alpha**2) / pi * _smoothie(t, alpha, sine_squared))
+    share = 4 / pi + alpha**2 / pi  # each over pi: a narrow lobe meets one rounding less
+    return lobe_above(t, alpha < SMOOTH, dirac(t), share * _smoothie(t, alpha, sine_squared))
 
 
 @takes(alpha=FROM_ZERO)

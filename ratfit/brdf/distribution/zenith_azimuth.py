@@ -1,6 +1,6 @@
 """Schlick's factors Z of the angle to the normal and A of the azimuth, and their product."""
 
-from sympy import Expr, Piecewise, elliptic_k, pi, sqrt
+from sympy import Expr, Piecewise, S, elliptic_k, pi, sqrt
 
 from ratfit.brdf._arguments import UNIT, takes
 from ratfit.brdf._limits import instead
@@ -23,7 +23,10 @@ def zenith(t: Expr, r: Expr, sine_squared: Expr | None = None) -> Expr:
     Source: schlick1994 Eq. 28, Z, which keeps Eq. 27.
     """
     rough = instead(r, 1, r < SMOOTH**2)
-    lobe = 1 / (rough * (t**2 + sine_squared_of(t, sine_squared) / rough) ** 2)
+    s2 = sine_squared_of(t, sine_squared)
+    below = rough * t**2 + s2
+    # A piece of its own: sympy would divide by the square, which underflows in float32.
+    lobe = Piecewise((S.Zero, s2 < 0), (rough / below, True)) / below
     return lobe_above(t, r < SMOOTH**2, dirac(t), lobe)
 
 

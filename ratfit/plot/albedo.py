@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
 
 TOP = 1.6
 """The greatest albedo that is drawn, but for a curve that is above it everywhere: some grow beyond all bounds."""
+
+NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
 def plot_albedo(check: Check, axes: Axes | None = None) -> Axes:
@@ -91,6 +95,8 @@ def _greatest(albedo: Albedo) -> float:
     return float(np.max(albedo.values, initial=0.0, where=~np.isnan(albedo.values)))
 
 
-def _label(what: str, setting: Any) -> str:
-    values = ", ".join(f"{name} = {value:.3g}" for name, value in setting.items())
-    return str(plain(shortened(f"{what}: {values}" if values else what, LETTERS)))
+def _label(what: str, setting: Mapping[str, float]) -> str:
+    """What a curve is and at which setting, in as many lines as it takes; between lines no value is torn."""
+    values = ", ".join(f"{name} = {value:.3g}".replace(" ", NO_BREAK) for name, value in setting.items())
+    lines = wrap(f"{what}: {values}" if values else what, LETTERS, break_on_hyphens=False)
+    return plain("\n".join(lines).replace(NO_BREAK, " "))

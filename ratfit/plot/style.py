@@ -86,13 +86,16 @@ def legend_below(axes: Axes, handles: Sequence[Any], is_ours: bool) -> None:
 
     if not handles:
         return
-    widths = [text_width(str(handle.get_label()), 9) for handle in handles]
+    texts = [str(handle.get_label()).split("\n") for handle in handles]
+    widths = [max(text_width(line, 9) for line in lines) for lines in texts]
     half = (len(handles) + 1) // 2
     columns = 2 if max(widths[:half]) + max(widths[half:], default=0) < min(_BESIDE, axes_width(axes)) else 1
     more_lines = axes.get_xlabel().count("\n")
     if is_ours:
-        height = axes.figure.get_figheight() + _ROW * (half if columns == 2 else len(handles))  # type: ignore[union-attr]
-        axes.figure.set_figheight(height + more_lines * _LINE / 72)  # type: ignore[union-attr]  # a Figure of its own
+        side_by_side = (texts[:half], texts[half:]) if columns == 2 else (texts,)
+        rows = max(sum(map(len, column)) for column in side_by_side)
+        height = axes.figure.get_figheight() + _ROW * rows + more_lines * _LINE / 72  # type: ignore[union-attr]
+        axes.figure.set_figheight(height)  # type: ignore[union-attr]  # a Figure of its own
     axes.legend(
         handles=list(handles),
         loc="upper center",

@@ -217,8 +217,14 @@ def told(condition):
     "name, others",
     [
         *(("ggx", 0), ("ggx-lambda", 0), ("ggx-correlated", 0), ("ggx-masking-ends", 0), ("schlick-masking", 0)),
-        *(("grooves", 0), ("ward", 0), ("dielectric", 0), ("beckmann-lambda", 2), ("beckmann-masking", 2)),
-        ("phong-density", 1),
+        ("grooves", 0),
+        *(
+            pytest.param(*each, marks=pytest.mark.thorough)
+            for each in (
+                *(("ward", 0), ("dielectric", 0), ("beckmann-lambda", 2), ("beckmann-masking", 2)),
+                ("phong-density", 1),
+            )
+        ),
     ],
 )
 def test_the_conditions_of_a_card_are_those_that_a_study_proposes(name, others):

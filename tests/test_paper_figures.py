@@ -283,6 +283,7 @@ def run(capsys, *arguments):
     return left.value.code, *capsys.readouterr()
 
 
+@pytest.mark.thorough
 def test_command_writes_whole_files_that_are_the_same_again(tmp_path, capsys):
     code, out, err = run(capsys, "figure4", "--out", str(tmp_path / "new" / "folder"))
     assert code == 0

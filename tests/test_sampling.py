@@ -81,6 +81,7 @@ def test_the_parameters_and_the_directions_have_streams_of_their_own():
     assert not {settled(each) for each in itertools.chain(*found)} & set(np.ravel(parameters).tolist())
 
 
+@pytest.mark.thorough
 def test_points_depend_on_neither_shape_nor_chunk_nor_kernel():
     """Nor on what a compiler makes of them: without jit every operation is rounded by itself."""
     counters, seed = np.arange(774, dtype=np.uint64), np.uint64(5)

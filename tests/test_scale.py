@@ -74,6 +74,7 @@ def machines():
     return {devices: json.loads(text.splitlines()[-1]) for devices, text in found.items()}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("devices", [(2,), (8,), (1, 1)], ids=["2 devices", "8 devices", "2 processes"])
 @pytest.mark.parametrize("name", ["eq12", "eq19"])
 def test_the_result_is_the_same_to_the_last_bit_wherever_it_is_computed(machines, name, devices):
@@ -85,6 +86,7 @@ def test_the_result_is_the_same_to_the_last_bit_wherever_it_is_computed(machines
     assert one["found"][name]["samples"] == 3_000_000
 
 
+@pytest.mark.thorough
 def test_every_protocol_draws_the_same_points_on_two_devices(machines):
     one, two = (machines[devices]["found"] for devices in ((1,), (2,)))
     drawn = [name for name in one if not name.startswith("eq")]

@@ -292,7 +292,7 @@ fractions = st.tuples(st.lists(products, min_size=1, max_size=2).map(sum), st.bo
 )
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(fractions)
 def test_random_fractions(expression):
     found = schedule(expression, x)

@@ -77,6 +77,7 @@ def test_errors_are_those_of_the_models_on_directions(name, pairs):
     assert (measured.curve, measured.poles) == (None, ())
 
 
+@pytest.mark.thorough
 def test_a_model_in_its_own_place_has_no_error():
     each = STAND_INS["cook-torrance-optimised"]
     same = type(each)(each.exact, each.exact)

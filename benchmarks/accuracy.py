@@ -5,9 +5,12 @@ factors with one of the NAMEs in theirs. `ratfit.lower` evaluates the factor on 
 of the source in balls of 512 bits; a ball of less than 50 digits ends the run. A line says how often a value is within
 4 ulp (`numpy.spacing` of the exact value), and the worst, in ulp and in units of 2^-52 of the exact value.
 
-Places (`places.py`): `0..1` is drawn evenly, `10^(-2..0)` evenly in the logarithm, `away` is from the critical angle and
-without total reflection. Of x the cosine is made: x is tan/alpha in the lobe of a fraction, the exponent of an
+Places (`places.py`): `0..1` is drawn evenly, `10^(-2..0)` evenly in the logarithm, `away` is from the critical angle
+and without total reflection. Of x the cosine is made: x is tan/alpha in the lobe of a fraction, the exponent of an
 exponential or of a power; y is a share of the way from one end to the other.
+
+Left out: what is kept as it is misprinted, `schlick_clamped` and `separable`, which add nothing to others, and the
+integrals of Smoothie's distribution and of the azimuth's factor.
 """
 
 import sys

@@ -6,7 +6,7 @@ comes from, which is transparent: eta < 1 where that is the denser one. f in [0,
 Every F lies in [0, 1], but for the printed formulas that are kept because they are wrong.
 
 Accuracy in float64, in ulp of F itself, by `python benchmarks/accuracy.py 200000`: how often F is within 4, and the
-most, for u in [0, 1] away from the critical angle (|w| of `conductor` above 0.45; nearly no surface: u > 0.01).
+most that was met, away from the critical angle (|w| of `conductor` above 0.45; nearly no surface: u > 0.01).
 
     metals, eta in [0.02, 10] and kappa in [1, 20]                 all        2.9
     eta in [1.5, 10] and kappa in [0, 1]                           all        3.4
@@ -18,7 +18,7 @@ most, for u in [0, 1] away from the critical angle (|w| of `conductor` above 0.4
     the same with kappa in [0, 0.001]                              99.73 %    7.3
 
 What is left above 4 is a dozen roundings that happen to add up. `normal`, `index`, `spectral`, `lazanyi` and `schlick`
-are within 4 everywhere (3.6 at most). An exponential magnifies the error of its argument: at f = 0 and u > 0.75
+are within 4 (3.6 at most, for eta up to 10). An exponential magnifies the error of its argument: at f = 0 and u > 0.75
 `spherical_gaussian` is within 4 at 98.7 % and 4.6 at most, `karis` at 73 % and 13.3, `smoothie` at 79 % and 12.1; for
 f >= 0.01 all three are within 4.
 """

@@ -12,8 +12,8 @@ whose exponent is beyond `UNDERFLOW` is 0. Gradients are finite where there is n
 Where lobes are narrow t has no digits of the angle left: a float32 is 1 - 6e-8 next to 1, an angle of 3e-4. Those who
 know 1 - t^2 better, from the tangential part of H, give it as `sine_squared`; left out, it is made of t.
 
-Accuracy in float64, roughness from 0.01 on, by `python benchmarks/accuracy.py 200000`, the worse of the whole range of t
-and the lobe: how often D is within 4 ulp, and the most in ulp and in units of 2^-52 of D.
+Accuracy in float64, roughness from 0.01 on, by `python benchmarks/accuracy.py 200000`, the worse of the whole range of
+t and the lobe: how often D is within 4 ulp, and the most that was met, in ulp and in units of 2^-52 of D.
 
     `phong`, `azimuth`     all        3.1   1.9       `schlick`              99.6 %    6.4   3.6
     `zenith`               99.976 %   4.9   2.7       `beckmann_rational`    99.2 %    7.5   4.2

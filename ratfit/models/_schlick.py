@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ratfit._target import Parameter, parameter
-from ratfit.models.directions import SINE2, V_PRIME, W2, T, V
+from ratfit.models.directions import SINE2, T2, V_PRIME, W2, V
 
 LOW, LOW_PRINTED = sp.Rational(1, 10**9), sp.Rational(1, 10**4)
 """Cosines below count as this where one divides by them, so that float32 holds the result; in print by more of them."""
@@ -97,7 +97,7 @@ def lobe(layer: Layer, *, printed: bool = False) -> Lobe:
     In print A is the square root of that.
     """
     r, p = sp.Max(layer.r, NEARLY_MIRROR), layer.p
-    zenith, azimuth = (T**2 + SINE2 / r) ** 2, 1 - W2 + W2 / p**2
+    zenith, azimuth = (T2 + SINE2 / r) ** 2, 1 - W2 + W2 / p**2
     return Lobe(1 / (r * sp.sqrt(p)), zenith * sp.sqrt(azimuth)) if printed else Lobe(1 / (r * p), zenith * azimuth)
 
 

@@ -1,4 +1,4 @@
-"""Pairs of directions, and the five cosines by which a reflectance depends on them, two of them squared as well.
+"""Pairs of directions, and the five cosines by which a reflectance depends on them; squares of two of them as well.
 
 Directions are arrays of shape (..., 3) in the local frame of the surface: the normal N is +z, the tangent +x. In the
 letters of schlick1994, H being the half vector of the view V and the light V': `t` = N.H, `u` = H.V, `v` = N.V,
@@ -6,8 +6,8 @@ letters of schlick1994, H being the half vector of the view V and the light V': 
 products follow: V.V' = 2 u^2 - 1, |V + V'| = 2 u, and t = (v + v')/(2 u).
 
 Near N a cosine says little of the angle: of 1 - t^2 below 1e-7 a float32 t has no digit. What a narrow lobe is made of
-is therefore a letter too, s2 = 1 - t^2, taken from the tangential part of V + V' with all its digits; and w2 = w^2,
-which costs no square root.
+is therefore a letter too, s2 = 1 - t^2, taken from the tangential part of V + V' with all its digits; and t2 = t^2 and
+w2 = w^2, which wait for no square root.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ T, U, V, V_PRIME, W = (parameter(name, 0, 1) for name in ("t", "u", "v", "v_prim
 LETTERS = (T, U, V, V_PRIME, W)
 """The symbols that a model's formula is written in, beside its parameters."""
 
-SINE2, W2 = parameter("s2", 0, 1), parameter("w2", 0, 1)
-"""1 - t^2 and w^2, for formulas that are computed on arrays."""
+T2, SINE2, W2 = (parameter(name, 0, 1) for name in ("t2", "s2", "w2"))
+"""t^2, 1 - t^2 and w^2, for formulas that are computed on arrays."""
 
-SQUARES: Mapping[sp.Expr, sp.Expr] = {SINE2: (1 - T) * (1 + T), W2: W**2}
+SQUARES: Mapping[sp.Expr, sp.Expr] = {T2: T**2, SINE2: (1 - T) * (1 + T), W2: W**2}
 """What the squares are in the cosines."""
 
 V_DOT_L = 2 * U**2 - 1
@@ -89,7 +89,7 @@ def traced(value: Any) -> bool:
 
 
 def cosines(view: Any, light: Any) -> tuple[Any, ...]:
-    """t, u, v, v', w, 1 - t^2 and w^2 of pairs of unit directions, of the shape that both broadcast to, less the last.
+    """t, u, v, v', w, t^2, 1 - t^2 and w^2 of pairs of unit directions, each of the shape of their leading axes.
 
     No cosine is above 1, whatever the rounding, and no square by more than the rounding. At N = H, where H has no
     azimuth, w is 1; at V' = -V, where there is no H, t is 0; both within `SHORT`, so that gradients stay finite in
@@ -101,14 +101,15 @@ def cosines(view: Any, light: Any) -> tuple[Any, ...]:
     across = x * x + y * y
     squared = across + z * z
     short = max(SHORT**2, float(numpy.finfo(squared.dtype).tiny))
-    length = numpy.sqrt(_at_least(numpy, short, squared))
-    one_over = 1 / length
-    t = _at_least(numpy, 0, z) * one_over
-    sine2 = numpy.where(squared > short, across * one_over * one_over, 1).astype(t.dtype)
+    held = _at_least(numpy, short, squared)
+    length, one_over = numpy.sqrt(held), 1 / held  # side by side: neither waits for the other
+    above = _at_least(numpy, 0, z)
+    t, t2 = above * length * one_over, above * above * one_over
+    sine2 = numpy.where(squared > short, across * one_over, 1).astype(t.dtype)
     w2 = _where_above(numpy, short, across, lambda known: x * x / known, 1)
     w = _where_above(numpy, short, across, lambda known: abs(x) / numpy.sqrt(known), 1)
     v, v_prime = numpy.broadcast_arrays(view[..., 2], light[..., 2])
-    return *(_at_most_one(numpy, cosine) for cosine in (t, length / 2, v, v_prime, w)), sine2, w2
+    return *(_at_most_one(numpy, cosine) for cosine in (t, length / 2, v, v_prime, w)), t2, sine2, w2
 
 
 def _at_least(numpy: Any, least: float, values: Any) -> Any:

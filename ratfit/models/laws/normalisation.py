@@ -61,6 +61,6 @@ def _integral(model: Model, setting: Setting, order: int) -> float:
             y, weight = unit_gauss(4 * order)
             theta = panel.place(y)
             t, sine = np.cos(theta), np.sin(theta)
-            found = function(t, 1.0, 1.0, 1.0, w, sine**2, w**2, *values)
+            found = function(t, 1.0, 1.0, 1.0, w, t**2, sine**2, w**2, *values)
             total += float(np.sum(found * t * sine * weight * panel.slope(y) * across))
     return total

@@ -23,10 +23,9 @@ def zenith(t: Expr, r: Expr, sine_squared: Expr | None = None) -> Expr:
     Source: schlick1994 Eq. 28, Z, which keeps Eq. 27.
     """
     rough = instead(r, 1, r < SMOOTH**2)
-    s2 = sine_squared_of(t, sine_squared)
-    below = rough * t**2 + s2
+    below = rough * t**2 + sine_squared_of(t, sine_squared)
     # A piece of its own: sympy would divide by the square, which underflows in float32.
-    lobe = Piecewise((S.Zero, s2 < 0), (rough / below, True)) / below
+    lobe = Piecewise((S.Zero, t < 0), (rough / below, True)) / below
     return lobe_above(t, r < SMOOTH**2, dirac(t), lobe)
 
 

@@ -456,6 +456,7 @@ def test_bench_compares_with_older_rows(run, tmp_path):
     assert status == 1 and "peak_mean" in out and "+100 %" in out
 
 
+@pytest.mark.thorough
 def test_bench_says_where_a_target_is_infinite_and_keeps_its_remarks_with_the_errors(run):
     words = ["1/(2*x - 1)", "--on", "0", "1", "--form", "0/1", "--value", "0", "--value", "1"]
     status, out, _ = run("bench", *words, "--samples", "1000", "--backend", "none")

@@ -226,6 +226,7 @@ def test_interpolated_coefficients_are_held_to_their_range():
         fit(0.5, m=3.0)
 
 
+@pytest.mark.thorough
 def test_coefficients_along_a_parameter_hold_at_the_nodes_of_the_table():
     """1/(1 + b*x) with the integral 1/2 + m/10: log(1 + b)/b = 1/2 + m/10."""
     fit = fit_of("x", "0 1", "0/1", value=["0;equals=1"], integral=["equals=1/2+m/10"], parameter=["m=1/10:2"])
@@ -429,6 +430,7 @@ def test_an_inner_variable_brings_its_pole_along():
     assert fit.expression is None and "pole at x = 0.333" in fit.reasons[0]
 
 
+@pytest.mark.thorough
 def test_coefficients_that_interpolation_cannot_follow_are_no_answer(monkeypatch):
     """a*x + exp(a)*x**2 with the value sin(k) at 1: eight turns within the range of k."""
     monkeypatch.setattr(tabulated, "GRIDS", (17,))  # more nodes would do no better here, and take their time
@@ -538,6 +540,7 @@ def test_a_condition_that_no_member_of_the_form_can_keep():
     assert fit.expression is None and "no member of this form keeps the value at 0" in fit.reasons[0]
 
 
+@pytest.mark.thorough
 def test_two_parameters_make_a_table_of_two():
     """q/(1 + b*x) with the integral p: q*log(1 + b)/b = p."""
     words = {"unknowns": "a,b", "value": ["0;equals=q"], "integral": ["equals=p"]}

@@ -107,7 +107,10 @@ def test_the_tables_name_every_card():
     assert set(EXPECTED) | OTHERS == {c.name for c in cards()}
 
 
-@pytest.mark.parametrize("name", EXPECTED)
+LONG = pytest.param("beckmann-general", marks=pytest.mark.thorough)
+
+
+@pytest.mark.parametrize("name", [LONG if name == "beckmann-general" else name for name in EXPECTED])
 def test_card_derives_what_was_published(name):
     fit = rf.derive(name)
     status, route, free = EXPECTED[name]
@@ -131,6 +134,7 @@ def test_the_azimuth_factor_as_printed_fails_its_normalisation():
     assert abs(found - mpmath.pi / 2) > 0.04
 
 
+@pytest.mark.thorough
 def test_a_normal_density_by_its_peak_and_two_moments():
     """p0/(1 + b*x**2 + c*x**4): residues give total p0*pi/sqrt(b + 2*sqrt(c)), second moment total/sqrt(c)."""
     fit = rf.derive("normal-density")

@@ -115,7 +115,7 @@ def test_the_tangential_letter_is_the_sum_of_components():
 # --- Energy ---
 
 SURFACES = [
-    pytest.param(r, p, marks=pytest.mark.thorough) if k % 2 else (r, p)
+    pytest.param(r, p, marks=pytest.mark.thorough) if k not in (2, 4) else (r, p)
     for k, (r, p) in enumerate(
         [(1e-4, 1.0), (3e-3, 0.02), (0.26, 0.002), (0.02, 0.3), (0.3, 1.0), (0.5, 0.1), (0.7, 0.2), (0.9, 1.0)]
     )

@@ -81,6 +81,7 @@ def test_eq16_stands_for_the_product_of_two_smiths(stated, values, expected, nam
         assert value(exact, values | {"m": m}) == pytest.approx(float(product), rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_eq16_is_measured_as_an_integral_over_the_angles_says():
     angles = (np.arange(1000) + 0.5) / 1000 * math.pi - math.pi / 2
     s, a = np.meshgrid(angles, angles)

@@ -224,6 +224,7 @@ def equation_misfit(condition: rf.Equation, f: sp.Expr, values) -> mpmath.mpf:
 # --- the table is tested too
 
 
+@pytest.mark.thorough
 def test_every_kind_occurs_often():
     everything = [random_problem(number) for number in range(len(ALL))]
     assert len(everything) == 200

@@ -490,6 +490,7 @@ def test_a_choice_that_makes_a_pole_is_refused():
         assert "pole" in str(error)
 
 
+@pytest.mark.thorough
 def test_forced_polynomial_route_agrees_with_the_linear_one():
     problem = words("exp(x)", "0 1", "2/2", value=["0", "1"], derivative=["0", "1", "0;order=2"])
     linear, polynomial = (rf.derive(problem, route=route, timeout=TIMEOUT) for route in ("linear", "polynomial"))
@@ -511,6 +512,7 @@ def test_a_kink_of_a_plain_symbol_is_seen():
         rf.derive(problem, timeout=TIMEOUT)
 
 
+@pytest.mark.thorough
 def test_forty_conditions_at_one_node():
     derivatives = ["0", *(f"0;order={k}" for k in range(2, 41))]
     fit = rf.derive(words("exp(x)", "0 1", "20/20", value=["0"], derivative=derivatives), timeout=TIMEOUT)
@@ -553,6 +555,7 @@ def test_a_random_fraction_comes_back_from_full_hermite_data(above, below, place
     assert same_function(fit.expression, numerator / denominator)
 
 
+@pytest.mark.thorough
 @settings(max_examples=10, deadline=None)
 @given(small, small, st.integers(-3, 3), st.sampled_from([1, 2]))
 def test_a_random_fraction_is_among_the_answers_to_incomplete_data(a0, a1, b1, order):

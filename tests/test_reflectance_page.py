@@ -53,7 +53,7 @@ def test_the_example_gives_its_numbers():
     assert found == pytest.approx(expected, rel=1e-14)
     assert float(re.search(r"N @ L\) +# ([\d.]+)", PAGE.read_text())[1]) == pytest.approx(found, rel=1e-15)
 
-    a = 0.5 / (math.sqrt(2) * 0.3 * math.sqrt(0.75))
+    a = 0.5 / (0.3 * math.sqrt(0.75))
     g = a * math.sqrt(math.pi) * (1 + math.erf(a))
     printed = float(re.search(r"evalf\(20\) +# ([\d.]+)", PAGE.read_text())[1])
     assert printed == pytest.approx(g / (g + math.exp(-a * a)), rel=1e-14)

@@ -46,6 +46,7 @@ IMPOSSIBLE = [
     (distribution.zenith, (u, 2), "zenith: r is 2: give a number from 0 to 1"),
     (distribution.ggx, (u, x, sp.I), "ggx: sine_squared is I: give a real number"),
     (roughness.alpha_by_peak, (-3,), "alpha_by_peak: n is -3: give -2 or more"),
+    (roughness.wide_from_ggx, (2,), "wide_from_ggx: alpha is 2: give a number from 0 to 1"),
     (roughness.ggx_from_r, (1.5,), "ggx_from_r: r is 1.5"),
     (sampling.ggx_cosine, (2, 0.3), "ggx_cosine: a is 2: give a number from 0 to 1"),
     (sampling.azimuth, (x, 1.5), "azimuth: p is 1.5"),

@@ -8,6 +8,7 @@ import sympy as sp
 from mpmath import mpf
 
 from ratfit._lower import lower
+from ratfit._parse import RatfitError
 from ratfit.brdf import distribution as D
 from ratfit.brdf import roughness
 from ratfit.brdf.interior import interior
@@ -116,3 +117,21 @@ def test_conversions_at_their_ends():
     assert lower(roughness.alpha_at(w, a, b), (w, a, b))(1.0, 0.2, 0.5) == pytest.approx(0.2)
     assert lower(roughness.alpha_at(w, a, b), (w, a, b))(0.0, 0.2, 0.5) == pytest.approx(0.5)
     assert roughness.alpha_from_perceived(sp.Rational(1, 2)) == sp.Rational(1, 4)
+
+
+@pytest.mark.parametrize("conversion", [
+    lambda number: roughness.alpha_by_slope(number(0)),
+    lambda number: roughness.alpha_by_peak(number(-2)),
+    lambda number: roughness.exponent_by_peak(number(0)),
+    lambda number: roughness.exponent_by_slope(number(0)),
+    lambda number: roughness.wide_from_ggx(number(1)),
+    lambda number: roughness.isotropy(number(1), number(0)),
+])  # fmt: skip
+@pytest.mark.parametrize("number", [int, float, sp.Integer, sp.Float])
+def test_without_finite_value_a_conversion_is_infinite(conversion, number):
+    assert conversion(number) is sp.oo
+
+
+def test_no_isotropy_of_a_mirror():
+    with pytest.raises(RatfitError, match="both 0"):
+        roughness.isotropy(0, sp.S.Zero)

@@ -9,12 +9,18 @@ r, p    schlick1994's roughness and isotropy
 smoothie's alpha, `wide` here
 
 A conversion is an identity where both distributions are then the same function, else it keeps one property, which its
-name says. Letters are symbols or sympy's numbers, at least 0; on arrays a conversion without finite value is infinite.
+name says. Letters are symbols or numbers, at least 0; a conversion without finite value is infinite, on arrays too.
 """
 
-from sympy import Expr, Integer, log, oo, pi, sqrt
+from sympy import Expr, Integer, S, log, oo, pi, sqrt
 
+from ratfit._parse import RatfitError
 from ratfit.brdf._arguments import FROM_ZERO, UNIT, takes
+
+
+def _over(above: Expr, below: Expr) -> Expr:
+    """above/below, infinite where below is 0: Python refuses that, and sympy leaves the sign open."""
+    return oo if S(below).is_zero else above / below
 
 
 @takes(slope=FROM_ZERO)
@@ -41,25 +47,25 @@ def exponent_by_peak(alpha: Expr) -> Expr:
 
     Negative for alpha > 1, infinite at 0. Source: microfacet, the conversions of D as printed; polimi2024 (Blinn).
     """
-    return 2 * (1 - alpha) * (1 + alpha) / alpha**2
+    return _over(2 * (1 - alpha) * (1 + alpha), alpha**2)
 
 
 @takes(n=(Integer(-2), oo))
 def alpha_by_peak(n: Expr) -> Expr:
-    """alpha = sqrt(2/(n + 2)), the inverse of `exponent_by_peak`. Source: microfacet, as printed."""
-    return sqrt(2 / (n + 2))
+    """alpha = sqrt(2/(n + 2)), the inverse of `exponent_by_peak`; infinite at -2. Source: microfacet, as printed."""
+    return sqrt(_over(S(2), n + 2))
 
 
 @takes(alpha=FROM_ZERO)
 def exponent_by_slope(alpha: Expr) -> Expr:
     """n = 2/alpha^2: Phong's mean square slope, 2/n, is Beckmann's. GGX has none: its mean square slope is infinite."""
-    return 2 / alpha**2
+    return _over(S(2), alpha**2)
 
 
 @takes(n=FROM_ZERO)
 def alpha_by_slope(n: Expr) -> Expr:
     """alpha = sqrt(2/n), the inverse of `exponent_by_slope`; infinite at n = 0."""
-    return sqrt(2 / n)
+    return sqrt(_over(S(2), n))
 
 
 @takes(alpha=FROM_ZERO)
@@ -121,8 +127,11 @@ def isotropy(along: Expr, across: Expr) -> Expr:
     """p = along/across, of roughness or slopes along the tangent and across, the rougher one across: p in [0, 1].
 
     For the A that keeps Eq. 27 of schlick1994 an identity: every elliptical distribution has this share of azimuths.
+    Infinite where across alone is 0; fails with `RatfitError` where both are.
     """
-    return along / across
+    if S(along).is_zero and S(across).is_zero:
+        raise RatfitError("isotropy: along and across are both 0, a mirror: give one above 0, or take p = 1")
+    return _over(along, across)
 
 
 @takes(along=FROM_ZERO, across=FROM_ZERO)
@@ -141,10 +150,10 @@ def ggx_from_wide(wide: Expr) -> Expr:
     return wide / sqrt(4 + wide**2)
 
 
-@takes(alpha=FROM_ZERO)
+@takes(alpha=UNIT)
 def wide_from_ggx(alpha: Expr) -> Expr:
     """Smoothie's alpha for GGX's, 2 alpha/sqrt(1 - alpha^2), the inverse of `ggx_from_wide`; infinite at alpha = 1."""
-    return 2 * alpha / sqrt((1 - alpha) * (1 + alpha))
+    return _over(2 * alpha, sqrt((1 - alpha) * (1 + alpha)))
 
 
 @takes(roughness=UNIT)

@@ -104,12 +104,14 @@ def lower(
     dtype (integers count as the backend's default float); from Python numbers alone, a Python float on NumPy. Division
     by zero is inf or nan, without a warning. On JAX it may be jitted, differentiated and mapped.
 
-    **Fails** with `RatfitError` for a symbol that is no argument, or a function that arrays do not have.
+    **Fails** with `RatfitError` for a symbol that is no argument, a function that arrays do not have, an expression or
+    arguments that are not sympy's.
     """
     play = {"numpy": _play_numpy, "jax": _play_jax}.get(backend)
     if play is None:
         raise RatfitError(f"no array library {backend!r}: lower to 'numpy' or 'jax'")
-    played = tape(sp.sympify(expression, strict=True), tuple(arguments), steps)
+    _check_arguments(arguments)
+    played = tape(_sympified(expression), tuple(arguments), steps)
 
     def function(*values: Any) -> Any:
         if len(values) != len(arguments):
@@ -117,6 +119,22 @@ def lower(
         return play(played, values)
 
     return function
+
+
+def _check_arguments(arguments: object) -> None:
+    if not isinstance(arguments, Sequence) or isinstance(arguments, str):
+        raise RatfitError(f"the arguments are {arguments!r}: give a tuple of symbols, as (x,)")
+    for argument in arguments:
+        if not isinstance(argument, sp.Symbol):
+            raise RatfitError(f"the argument {argument!r} has the type {type(argument).__name__}: give a sympy.Symbol")
+
+
+def _sympified(expression: object) -> sp.Expr:
+    try:
+        return sp.sympify(expression, strict=True)
+    except sp.SympifyError as no_expression:
+        kind = type(expression).__name__
+        raise RatfitError(f"the expression has the type {kind}: give sympy's, made of sympy.Symbol") from no_expression
 
 
 @functools.lru_cache(maxsize=256)

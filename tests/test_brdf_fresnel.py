@@ -400,3 +400,9 @@ def test_what_no_table_holds(name, wavelength, remedy):
 
 def test_the_room_is_open():
     assert brdf.fresnel is fresnel and brdf.metals is metals
+
+
+@pytest.mark.parametrize("wavelength", ["0.55", None, True, U, sp.I, [0.55]])
+def test_a_wavelength_is_a_number(wavelength):
+    with pytest.raises(RatfitError, match="give a number of micrometres"):
+        metals.material("gold").at(wavelength)

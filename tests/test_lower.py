@@ -199,3 +199,20 @@ def test_one_kernel_serves_all_parameter_values():
     for value in (0.25, 0.5):
         assert built.at({m: value}, "float32")(samples)[2] == pytest.approx(value / (1 + value**2))
     assert built.jitted._cache_size() == 1
+
+
+@pytest.mark.parametrize(
+    ("expression", "arguments", "remedy"),
+    [
+        ("x**2", (x,), "type str: give sympy's"),
+        (None, (x,), "type NoneType: give sympy's"),
+        (x**2, x, "a tuple of symbols"),
+        (x**2, "x", "a tuple of symbols"),
+        (x**2, ("x",), "'x' has the type str: give a sympy.Symbol"),
+        (x**2, (x**2,), "give a sympy.Symbol"),
+    ],
+)
+def test_what_is_not_sympys_is_refused_with_a_remedy(expression, arguments, remedy):
+    with pytest.raises(RatfitError, match=remedy) as refused:
+        lower(expression, arguments)
+    assert "\n" not in str(refused.value)

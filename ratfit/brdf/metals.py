@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from numbers import Real
 
 from sympy import Expr, Rational, S, sqrt
 
@@ -36,8 +37,9 @@ class Material:
     def at(self, wavelength: Expr = YELLOW) -> tuple[Expr, Expr]:
         """eta and kappa at a wavelength in micrometres: the straight line between two rows, or the formula.
 
-        Fails with `RatfitError` outside `range`.
+        Fails with `RatfitError` outside `range`, and for what is no number.
         """
+        _check_number(wavelength)
         first, last = map(float, self.range)
         if not first <= float(wavelength) <= last:
             raise RatfitError(f"{self.name} is known from {first} to {last} micrometres, not at {wavelength}")
@@ -49,6 +51,12 @@ class Material:
         part = (wavelength - x0) / (x1 - x0)
         eta, kappa = (before + part * (after - before) for before, after in zip(low, high, strict=True))
         return eta, kappa
+
+
+def _check_number(wavelength: object) -> None:
+    is_kind = isinstance(wavelength, Expr | Real) and not isinstance(wavelength, bool)
+    if not (is_kind and S(wavelength).is_number and S(wavelength).is_extended_real is not False):
+        raise RatfitError(f"{wavelength!r} is no wavelength: give a number of micrometres, as sympy.Rational('0.55')")
 
 
 def names() -> tuple[str, ...]:

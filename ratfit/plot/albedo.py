@@ -52,7 +52,7 @@ def _draw(axes: Axes, check: Check, is_ours: bool) -> None:
     axes.axhspan(1, max(top, 1.1), color=RED, alpha=0.08, linewidth=0)
     axes.axhline(1, color=RED, linewidth=0.8)
     (worst,) = axes.plot(*_curve(bright.albedo), color=BLUE, linestyle=(0, (6, 1.6)), linewidth=1.4)
-    worst.set_label(_label("brightest found", bright.setting))
+    worst.set_label(_label("brightest found", bright.setting, bright.azimuth))
     (line,) = axes.plot(*_curve(check.albedo), color=BLACK, linewidth=1.6)
     line.set_label(_label("albedo", check.setting))
     seen = np.isfinite(check.samples.values) & np.isfinite(check.samples.errors) & (check.samples.values < top)
@@ -95,8 +95,10 @@ def _greatest(albedo: Albedo) -> float:
     return float(np.max(albedo.values, initial=0.0, where=~np.isnan(albedo.values)))
 
 
-def _label(what: str, setting: Mapping[str, float]) -> str:
+def _label(what: str, setting: Mapping[str, float], azimuth: float = 0.0) -> str:
     """What a curve is and at which setting, in as many lines as it takes; between lines no value is torn."""
-    values = ", ".join(f"{name} = {value:.3g}".replace(" ", NO_BREAK) for name, value in setting.items())
+    angle = [f"view's azimuth {np.degrees(azimuth):.3g} degrees"] if azimuth else []
+    said = [*angle, *(f"{name} = {value:.3g}" for name, value in setting.items())]
+    values = ", ".join(each.replace(" ", NO_BREAK) for each in said)
     lines = wrap(f"{what}: {values}" if values else what, LETTERS, break_on_hyphens=False)
     return plain("\n".join(lines).replace(NO_BREAK, " "))

@@ -223,7 +223,8 @@ def test_command_says_yes(run):
 def test_command_says_no_and_where(run, tmp_path):
     picture = tmp_path / "albedo.svg"
     arguments = ("schlick-24-30", "--set", "r=0.3", "--set", "p=1", "--set", "C=1", "--plot", str(picture))
-    code, out, _ = run(*arguments, "--format", "json")
+    code, out, err = run(*arguments, "--format", "json")
+    assert err == f"wrote {picture}\n"
     found = json.loads(out)
     laws = {law["law"]: law for law in found["laws"]}
     assert code == 1 and not found["holds"] and found["fixed"] == {"r": 0.3, "p": 1.0, "C": 1.0}

@@ -418,7 +418,8 @@ def status(words):
 def test_derive_writes_the_picture_beside_its_text(tmp_path, capsys):
     file = tmp_path / "fit.svg"
     assert status(["derive", "eq15", "--set", "n=3", "--plot", str(file), "--reference", "gold"]) == 0
-    assert "choice      n = 3" in capsys.readouterr().out
+    out, err = capsys.readouterr()
+    assert "choice      n = 3" in out and err == f"wrote {file}\n"
     assert file.read_bytes().startswith(b"<?xml")
 
 

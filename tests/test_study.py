@@ -251,7 +251,7 @@ def test_pictures_are_written(suffix, tmp_path, capsys):
     out = tmp_path / "study.json"
     words = ["study", "1/(x+1)", "--on", "0", "1", "--plot", str(file), "--format", "json", "--out", str(out)]
     assert status(words) == 0
-    capsys.readouterr()
+    assert capsys.readouterr().err == f"wrote {file}\n"
     assert file.stat().st_size > 2000
     assert json.loads(out.read_text())["target"] == "1/(x + 1)"
 

@@ -23,9 +23,9 @@ from ratfit.cli.options import (
     problem_options,
     read_problem,
     write,
+    write_plot,
 )
 from ratfit.gallery import Card
-from ratfit.plot.write import write_picture
 
 
 @click.command(short_help="Derive a fit from its kernel conditions.", context_settings=WORDS, epilog=EXPRESSION_HELP)
@@ -74,7 +74,7 @@ def _write_picture(fit: Fit, file: str, reference: str | None) -> None:
         return
     from ratfit.plot import plot_fit
 
-    write_picture(plot_fit(fit, reference=reference).curves.figure, file)  # type: ignore[arg-type]  # a Figure of its own
+    write_plot(plot_fit(fit, reference=reference).curves.figure, file)
 
 
 def _check_reference(problem: Problem, name: str | None, values: dict[str, str]) -> None:

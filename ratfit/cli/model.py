@@ -8,8 +8,7 @@ import click
 
 from ratfit._inline import settings_of
 from ratfit._parse import RatfitError
-from ratfit.cli.options import Number, check_places, numbers, write
-from ratfit.plot.write import write_picture
+from ratfit.cli.options import Number, check_places, numbers, write, write_plot
 from ratfit.report.progress import waiting
 
 
@@ -51,7 +50,7 @@ def check_model(model: str | None, **options: Any) -> int:
     if options["plot"] is not None:
         from ratfit.plot.albedo import plot_albedo
 
-        write_picture(plot_albedo(checked).figure, options["plot"])  # type: ignore[arg-type]  # a Figure of its own
+        write_plot(plot_albedo(checked).figure, options["plot"])
     write((check_json if options["format_"] == "json" else check_text)(checked), options["out"])
     return 0 if checked.holds else 1
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from pathlib import Path
@@ -182,6 +183,14 @@ def check_places(out: str | None, plot: str | None = None) -> None:
     if plot is not None:
         picture_format(plot)
         check_place("--plot", plot)
+
+
+def write_plot(figure: Any, file: str) -> None:
+    """A picture to its file, said on standard error: standard output is the result's."""
+    from ratfit.plot.write import write_picture
+
+    write_picture(figure, file)
+    print(f"wrote {file}", file=sys.stderr)
 
 
 def positive(seconds: float) -> float:

@@ -9,9 +9,8 @@ import click
 from ratfit._inline import Words, target_of_words
 from ratfit._parse import RatfitError
 from ratfit._target import Target
-from ratfit.cli.options import WORDS, check_pair, check_places, one_word, positive, write
+from ratfit.cli.options import WORDS, check_pair, check_places, one_word, positive, write, write_plot
 from ratfit.gallery import card, find_problem, is_known
-from ratfit.plot.write import write_picture
 from ratfit.report.progress import waiting
 
 TARGET_HELP = """TARGET is looked up as a gallery name (`ratfit gallery`), then as a problem file (it ends in .toml or
@@ -47,7 +46,7 @@ def study(target: tuple[str, ...], **options: Any) -> int:
     if options["plot"] is not None:
         from ratfit.plot import plot_study
 
-        write_picture(plot_study(found).figure, options["plot"])  # type: ignore[arg-type]  # a Figure of its own
+        write_plot(plot_study(found).figure, options["plot"])
     written = {"text": study_text, "json": study_json, "toml": study_toml}[options["format_"]](found)
     write(written.rstrip("\n"), options["out"])
     return 0

@@ -186,6 +186,12 @@ def test_the_squares_are_right_where_the_cosines_have_no_digits():
     assert t == 1 and sine2 == pytest.approx(1e-10, rel=1e-6) and w2 == pytest.approx(0.36, rel=1e-6)
 
 
+@pytest.mark.parametrize("name", ["ward", "schlick", "microfacet-ggx", "oren-nayar"])
+@pytest.mark.parametrize("light", [[math.nan, 0.6, 0.8], [0.6, 0.0, math.nan]])
+def test_a_direction_that_is_no_number_has_no_reflectance(name, light):
+    assert math.isnan(MODELS[name]([0.6, 0, 0.8], light)) and MODELS[name]([0.6, 0, 0.8], [0, 0.6, -0.8]) == 0
+
+
 def test_settings_hold_the_ends_and_keep_what_is_fixed():
     model = own(K * ALPHA, K, ALPHA)
     found = settings(model, {"alpha": 0.2}, 10, 0)

@@ -48,7 +48,23 @@ def test_what_is_given_back_is_no_more_than_what_is_hidden_and_not_much_less():
         there = 1 - facets_albedo(v, azimuth, r, p)
         found = function(v, np.sqrt(1 - v * v) * np.cos(azimuth), r, p)
         assert 0 <= found <= there + 1.5e-4
-        assert 4 * r * (1 - r) * (there - found) <= (0.0185 if p == 1 else 0.074)
+        assert 4 * r * (1 - r) * (there - found) <= (0.0195 if p == 1 else 0.075)
+
+
+def test_between_the_points_of_the_programme_nothing_is_given_back_that_is_not_hidden():
+    """To the last digit, by the programme's own quadrature, where a search once found a whole too great by 2e-4."""
+    function = lower(hidden(V, X, R, P), [V, X, R, P])
+    v, azimuth = (each.ravel() for each in np.meshgrid(np.cos(np.linspace(0, 1.55, 20)), np.linspace(0, np.pi / 2, 5)))
+    random = np.random.default_rng(16)
+    for alpha, p in [(0.5241, 0.5988), *zip(random.uniform(0.02, 1, 20), random.uniform(0.001, 1, 20), strict=True)]:
+        there = 1 - conserving_fit.lobes(v, azimuth, alpha, p)[0]
+        assert np.all(function(v, np.sqrt(1 - v * v) * np.cos(azimuth), alpha**2, p) <= there)
+
+
+def test_the_brightest_place_that_was_found():
+    known = {"C": 1.0, "r": 0.2747, "p": 0.5988}
+    for name in ("schlick-conserving", "schlick-23-conserving", "schlick-double-conserving"):
+        assert albedo(name, [0.6, 0.4474, 0.3], tolerance=1e-6, **known).values.max() <= 1
 
 
 @pytest.mark.thorough

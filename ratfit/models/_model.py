@@ -115,7 +115,7 @@ class Model:
         """The formula where both directions are above the horizon; elsewhere 0, and no gradient comes from there."""
         _, numpy = library(*letters, *known.values())
         _, _, v, v_prime, *_ = letters
-        inside = (v > 0) & (v_prime > 0)
+        inside = ~((v <= 0) | (v_prime <= 0))  # nan too: it is no darkness
         harmless = (numpy.where(inside, letter, 0.5).astype(letter.dtype) for letter in letters)
         typed = (numpy.asarray(known[p.name], v.dtype) for p in self.parameters)
         steps, formula = self._program  # a division by parameters is made once, not for every pair

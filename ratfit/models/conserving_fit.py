@@ -20,8 +20,8 @@ from ratfit._parse import RatfitError
 from ratfit.models._half_sphere import horizon, unit_gauss
 from ratfit.models._hidden import ENDS, STEEPNESS, Powers
 
-ALPHA = (0.01, 0.03, 0.06, 0.1, 0.15, 0.22, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.96, 1.0)
-ISOTROPY = (0.001, 0.03, 0.07, 0.13, 0.22, 0.35, 0.5, 0.65, 0.82, 1.0)
+ALPHA = (0.01, 0.03, 0.06, 0.1, 0.15, 0.22, 0.3, 0.4, 0.47, 0.52, 0.57, 0.65, 0.75, 0.85, 0.95, 1.0)
+ISOTROPY = (0.001, 0.03, 0.07, 0.13, 0.22, 0.35, 0.48, 0.6, 0.75, 0.88, 1.0)
 AZIMUTHS = tuple(math.radians(15 * k) for k in range(7))
 COSINES = (*(math.cos(math.pi / 2 * 0.97 * k / 13) for k in range(14)), 0.02, 0.005, 0.001, 1e-6)
 

@@ -105,7 +105,7 @@ def cosines(view: Any, light: Any) -> tuple[Any, ...]:
     length, one_over = numpy.sqrt(held), 1 / held  # side by side: neither waits for the other
     above = _at_least(numpy, 0, z)
     t, t2 = above * length * one_over, above * above * one_over
-    sine2 = numpy.where(squared > short, across * one_over, 1).astype(t.dtype)
+    sine2 = numpy.where(squared <= short, 1, across * one_over).astype(t.dtype)
     w2 = _where_above(numpy, short, across, lambda known: x * x / known, 1)
     w = _where_above(numpy, short, across, lambda known: abs(x) / numpy.sqrt(known), 1)
     v, v_prime = numpy.broadcast_arrays(view[..., 2], light[..., 2])
@@ -113,8 +113,8 @@ def cosines(view: Any, light: Any) -> tuple[Any, ...]:
 
 
 def _at_least(numpy: Any, least: float, values: Any) -> Any:
-    """The values, and the least one in place of those below it, which have no gradient then."""
-    return numpy.where(values > least, values, least).astype(values.dtype)
+    """The values, and the least one in place of those below it, which have no gradient then; nan stays."""
+    return numpy.where(values < least, least, values).astype(values.dtype)
 
 
 def _at_most_one(numpy: Any, cosine: Any) -> Any:
@@ -124,8 +124,8 @@ def _at_most_one(numpy: Any, cosine: Any) -> Any:
 
 def _where_above(numpy: Any, least: float, values: Any, function: Any, otherwise: float) -> Any:
     """A function of those of some values that are above a least one; its gradient never sees the others."""
-    above = values > least
-    return numpy.where(above, function(numpy.where(above, values, 1)), otherwise).astype(values.dtype)
+    below = values <= least  # not nan, which stays
+    return numpy.where(below, otherwise, function(numpy.where(below, 1, values))).astype(values.dtype)
 
 
 def check_directions(array: Any, what: str) -> None:

@@ -59,10 +59,12 @@ def schlick(
     factor = DIRECTIONAL[directional]
     materials = [layer(mark, factor.least) for mark in ("", "_prime")[:layers]]
     formula = factor.printed if printed else factor.formula
+    wrong = "A" if factor.printed is factor.formula else "A, Eq. 32"
+    title = f"Schlick's {'one layer' if layers == 1 else 'two layers'}: {spectral}, {directional}"
     parameters = tuple(p for material in materials for p in material)
     return Model(
         name or f"schlick({spectral}, {directional}, {layers})",
-        f"Schlick's {'one layer' if layers == 1 else 'two layers'}: {spectral}, {directional}",
+        f"{title}, as printed ({wrong})" if printed else title,
         lambda: layered([s(U, each.c) for each in materials], [formula(each, printed) for each in materials]),
         parameters,
         f"schlick1994, Eq. 22, {where}, {factor.source}",

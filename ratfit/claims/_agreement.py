@@ -42,9 +42,10 @@ class Near:
 
 @dataclass(frozen=True)
 class AtMost:
-    """A number that is said to be no greater."""
+    """A number that is said to be no greater; `slack` is how closely it is measured."""
 
     bound: float
+    slack: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,30 @@ class AtLeast:
     """A number that is said to be no less."""
 
     bound: float
+
+
+@dataclass(frozen=True)
+class Above:
+    """A number that is said to be greater: by so much that it is no rounding of a computation."""
+
+    bound: float
+    by: float = 0.01
+
+
+@dataclass(frozen=True)
+class Below:
+    """A number that is said to be less: by so much that it is no rounding of a computation."""
+
+    bound: float
+    by: float = 0.01
+
+
+@dataclass(frozen=True)
+class Between:
+    """A number that is said to be about another: neither much less nor much greater."""
+
+    low: float
+    high: float
 
 
 ZERO = Rounded(0, 2e-5)
@@ -69,10 +94,16 @@ def agrees(found: Any, claimed: Any) -> bool:
             return abs(float(found) - value) <= unit / 2 * (1 + NUMBER)
         case Near(value, share):
             return abs(float(found) - value) <= share * abs(value)
-        case AtMost(bound):
-            return float(found) <= bound + NUMBER * (1 + abs(bound))
+        case AtMost(bound, slack):
+            return float(found) <= bound + slack + NUMBER * (1 + abs(bound))
         case AtLeast(bound):
             return float(found) >= bound - NUMBER * (1 + abs(bound))
+        case Above(bound, by):
+            return float(found) >= bound + by
+        case Below(bound, by):
+            return float(found) <= bound - by
+        case Between(low, high):
+            return low <= float(found) <= high
         case tuple():
             return len(found) == len(claimed) and all(map(agrees, found, claimed))
         case Mapping():
@@ -123,6 +154,12 @@ def shown(value: Any) -> Any:
             return value
         case Rounded(number, _) | Near(number, _):
             return number
+        case Above(bound, _):
+            return f"above {bound:g}"
+        case Below(bound, _):
+            return f"below {bound:g}"
+        case Between(low, high):
+            return f"from {low:g} to {high:g}"
         case AtMost(bound):
             return f"at most {bound:g}"
         case AtLeast(bound):

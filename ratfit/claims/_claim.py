@@ -19,8 +19,14 @@ DOCUMENTS: Mapping[str, str] = {
 
 VERDICTS: Mapping[str, str] = {
     "reproduced": "it holds as it stands",
-    "reading": "it holds when it is read as stated",
-    "wrong": "it does not hold; what holds instead is stated",
+    "reading": (
+        'it holds when it is read as stated; so does a word that names no number ("much", "similar") when it is taken '
+        'as the bound that the column "claimed" shows before it: the bound is chosen here, no author states it'
+    ),
+    "wrong": (
+        "it does not hold; what holds instead is stated. A word that is taken as a bound and fails under it is wrong "
+        "by that bound alone: the found number says by how much"
+    ),
     "undecided": "what is known does not decide it, for the reason stated",
 }
 
@@ -43,11 +49,12 @@ class Claim:
     """A statement of a source, what it says is so, and the computations that decide it.
 
     `claim` is the statement in our own words, `claimed` the value that it gives: a number or formula, a `Rounded`,
-    `AtMost` or `AtLeast`, counts, True for a law, or a function that makes it, for a formula that takes long. `found`
-    computes the same as the statement says it; None where the statement leaves open what is meant, which `open` then
-    says. `how` says in words how it is computed. `readings` are tried in their order where `found` does not agree;
-    `instead` is what is right where no reading agrees either, with a function that is True when it is. `measured` are
-    readings that take the time of machines.
+    `AtMost`, `Above` and their like, counts, True for a law, or a function that makes it, for a formula that takes
+    long. `found` computes the same as the statement says it; None where the statement leaves open what is meant, which
+    `open` then says. `how` says in words how it is computed. `readings` are tried in their order where `found` does
+    not agree; `instead` is what is right where no reading agrees either, with a function that is True when it is.
+    `measured` are readings that take the time of machines. `word` is the word of the statement that names no number,
+    and `claimed` the bound that it is taken as: what agrees with that is a reading, never reproduced.
     """
 
     id: str
@@ -60,6 +67,7 @@ class Claim:
     instead: Reading | None = None
     open: str = ""
     measured: tuple[Reading, ...] = ()
+    word: str = ""
 
     @property
     def document(self) -> str:
@@ -69,6 +77,11 @@ class Claim:
     def value(self) -> Any:
         """What is claimed, made if it is not yet."""
         return self.claimed() if isinstance(self.claimed, FunctionType) else self.claimed
+
+    @property
+    def stated(self) -> Any:
+        """What is claimed as it is shown: a bound that stands for a word goes with the word."""
+        return f'{shown(self.value)} for "{self.word}"' if self.word else shown(self.value)
 
 
 @dataclass(frozen=True)
@@ -88,7 +101,7 @@ class Decision:
             "place": claim.place,
             "claim": claim.claim,
             "verdict": self.verdict,
-            "claimed": shown(claim.value),
+            "claimed": claim.stated,
             "found": shown(self.found),
             "reading": self.reading,
         }
@@ -102,7 +115,7 @@ def decide(claim: Claim, *, measure: bool = False) -> Decision:
     """
     found = claim.found() if claim.found else None
     if claim.found and agrees(found, claim.value):
-        return Decision(claim, "reproduced", found, claim.how)
+        return Decision(claim, "reading" if claim.word else "reproduced", found, claim.how)
     nearest = found
     for reading in (*claim.readings, *(claim.measured if measure else ())):
         value = reading.found()

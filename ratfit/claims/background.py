@@ -8,7 +8,7 @@ import itertools
 import sympy as sp
 
 from ratfit.brdf import distribution, masking
-from ratfit.claims._agreement import ZERO, AtMost
+from ratfit.claims._agreement import ZERO, AtMost, Below
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo, over_pairs
 from ratfit.claims._models import V_PRIME, T, V, W, made, named
@@ -129,7 +129,7 @@ CLAIMS = (
         "S-3-obstructed",
         "Section 3",
         "the light that a G blocks is missing in existing models: none gives it back",
-        AtMost(0.9),
+        Below(1.0),
         least_of_facets,
         how="the least share that Beckmann's facets with their masking reflect, F = 1, alpha = 1, at four angles",
     ),

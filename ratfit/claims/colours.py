@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ratfit.brdf import fresnel, metals
-from ratfit.claims._agreement import AtLeast, AtMost
+from ratfit.claims._agreement import Above, AtLeast, AtMost
 from ratfit.claims._claim import Claim
 from ratfit.claims._models import V_PRIME, named
 
@@ -42,7 +42,7 @@ CLAIMS = (
         "PM-lights",
         "Color range",
         "with several lights the colour of a pixel can be above 1",
-        AtLeast(1.01),
+        Above(1.0),
         of_two_lights,
         how="a white matt surface under two white lights at 30 degrees",
     ),
@@ -58,7 +58,7 @@ CLAIMS = (
         "PM-metal-colour",
         "Specular reflection",
         "the specular colour of gold and copper is not white but that of the metal",
-        (AtLeast(1.5), AtLeast(1.5)),
+        (Above(1.0), Above(1.0)),
         lambda: (redness("gold"), redness("copper")),
         how="what they reflect along the normal at 650 nm over that at 450 nm, by their measured constants",
     ),

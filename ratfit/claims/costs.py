@@ -9,7 +9,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ratfit.brdf import masking
-from ratfit.claims._agreement import AtLeast, AtMost
+from ratfit.claims._agreement import Above, AtMost, Below, Between
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._models import V_PRIME, U, V, made
 from ratfit.claims.highlights import operations
@@ -81,7 +81,7 @@ CLAIMS = (
         "PM-ward-cost",
         "Ward",
         "the form of many books is less performant than the form in dot products",
-        AtLeast(1.01),
+        Above(1.0),
         lambda: ratio(ward(third=True), ward(third=False)),
         instead=Reading(
             "it trades a division for two multiplications, which weigh less by the cost model; the found number is the "
@@ -97,9 +97,9 @@ CLAIMS = (
         None,
         readings=(
             Reading(
-                "by weight of operations at most a quarter above a power of N.H with Schlick's Fresnel factor",
+                "by weight of operations 0.8 to 1.25 times a power of N.H with Schlick's Fresnel factor",
                 lambda: ratio(smoothie(), blinn(fresnel=True)),
-                AtMost(1.25),
+                Between(0.8, 1.25),
             ),
         ),
         open="the listing it is compared with is not there, and no machine is named; the found number is the weight of "
@@ -113,9 +113,9 @@ CLAIMS = (
         None,
         readings=(
             Reading(
-                "by weight of operations at most a quarter more, its own Fresnel factor included",
+                "by weight of operations 0.8 to 1.25 times that, its own Fresnel factor included",
                 lambda: ratio(approximate(), phong()),
-                AtMost(1.25),
+                Between(0.8, 1.25),
             ),
         ),
         open="similar means no number",
@@ -124,7 +124,7 @@ CLAIMS = (
         "SM-cost-simpler",
         "Approximate Smoothie",
         "the approximate version is simpler to compute than the microfacet version",
-        AtMost(0.9),
+        Below(1.0),
         lambda: ratio(approximate(), smoothie()),
         how="weight of the operations of the two listings",
     ),
@@ -134,13 +134,14 @@ CLAIMS = (
         "Kelemen's G is much cheaper than Smith's",
         AtMost(0.5),
         lambda: ratio(masking.kelemen(U, V, V_PRIME), made(masking.separable, masking.ggx, V, V_PRIME, ALPHA)),
-        how="weight of its operations over that of GGX's Smith masking; much is taken as a half",
+        how="weight of its operations over that of GGX's Smith masking",
+        word="much cheaper",
     ),
     Claim(
         "SM-F-cheaper",
         "Fresnel term, conclusion",
         "2^(a + b L.h) is cheaper than the power with exponent 5",
-        AtMost(0.99),
+        Below(1.0),
         lambda: ratio(exponential(), power_of_five()),
         how="weight of the operations from the vectors on: the power needs the half vector at unit length",
     ),

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import sympy as sp
 
 from ratfit._target import parameter
-from ratfit.claims._agreement import AtLeast, AtMost
+from ratfit.claims._agreement import Above, AtMost
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import albedo, over_pairs
 from ratfit.claims._models import LETTERS, V_PRIME, U, V, named
@@ -136,7 +136,7 @@ CLAIMS = (
         "PM-energy",
         "BRDF models",
         "in most cases the functions used for scan-line rendering do not conserve energy",
-        AtLeast(0.5),
+        Above(0.5),
         share_that_gains,
         how="the share of five printed models that, white, reflect more than falls on them, at 60 degrees",
     ),
@@ -244,7 +244,7 @@ CLAIMS = (
         "PM-oren-retro",
         "Oren-Nayar",
         "the model reflects back to where the light comes from",
-        AtLeast(1.1),
+        Above(1.0),
         retroreflection,
         how="towards the light over away from it, at 60 degrees and sigma = 1/2",
     ),
@@ -255,5 +255,6 @@ CLAIMS = (
         AtMost(0.02),
         table_is_direct,
         how="greatest difference for cosines above 1/10, with 64 by 64 entries between which it is bilinear",
+        word="can stand for",
     ),
 )

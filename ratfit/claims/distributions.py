@@ -184,7 +184,8 @@ CLAIMS = (
         "D is almost null for t below 1 - m",
         AtMost(0.001),
         lambda: max(share_below(each) for each in midpoints(count=50).tolist()),
-        how="greatest share of facets there, for m from 0 to 1; almost null is taken as a thousandth",
+        how="greatest share of facets there, for m from 0 to 1",
+        word="almost null",
     ),
     Claim(
         "S-21",

@@ -202,7 +202,7 @@ CLAIMS = (
     Claim(
         "S-14-range",
         "Eqs. 4, 14",
-        "the Fresnel factor is in [0, 1], so Eq. 14 is not below 0 for any f in [0, 1]",
+        "(implied) the Fresnel factor is in [0, 1], so Eq. 14 is not below 0 for any f in [0, 1]",
         AtLeast(0.0),
         lambda: spectral_at(fresnel.spectral_as_printed, 0.04).min(),
         how="least value over eight materials",
@@ -284,5 +284,6 @@ CLAIMS = (
         (True, AtLeast(0.5), AtMost(0.5)),
         lambda: (falls_with_u(DIELECTRICS), *(float(curve(DIELECTRICS[1], cosine)) for cosine in (0.05, 1.0))),
         how="F of diamond and glass falls in u all the way; glass at 87 degrees and at normal incidence",
+        word="most, little",
     ),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ratfit.brdf import fresnel
-from ratfit.claims._agreement import AtMost
+from ratfit.claims._agreement import Below
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._numbers import midpoints
 from ratfit.claims.fresnel import ETA, KAPPA, F, U, all_materials, curve, from_refraction
@@ -80,7 +80,7 @@ CLAIMS = (
     Claim(
         "S-14-mirror",
         "Eq. 14",
-        "Eq. 14 has a value for every mean material, whatever it reflects at normal incidence",
+        "(implied) Eq. 14 has a value for every mean material, whatever it reflects at normal incidence",
         F,
         at_full_reflection,
         instead=Reading(
@@ -92,7 +92,7 @@ CLAIMS = (
         "S-14-cost",
         "Section 4.2",
         "Eq. 14 is less work than Eq. 13 for every wavelength, since Eq. 13 is computed once",
-        AtMost(0.99),
+        Below(1.0),
         cost_of_eq_14,
         how="weight of the operations for three colours over that of Eq. 13 three times, as by the cost model",
     ),

@@ -64,6 +64,7 @@ CLAIMS = (
         AtLeast(0.9),
         lambda: spread_over_angles(DIELECTRICS[1]),
         how="glass: greatest less least value",
+        word="greatly",
     ),
     Claim(
         "PM-F-conductor",

@@ -6,7 +6,7 @@ import sympy as sp
 
 from ratfit._lower import tape
 from ratfit.brdf import fresnel
-from ratfit.claims._agreement import AtLeast, AtMost, same
+from ratfit.claims._agreement import Above, AtMost, same
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._models import V_PRIME, T, V, W, named
 from ratfit.claims.course import F_NORMAL, LIGHT, NORMAL, S_COLOUR, by_steps, is_mirror, mirrored, reflected
@@ -137,7 +137,7 @@ CLAIMS = (
         "PM-blinn-larger",
         "Blinn",
         "with the same exponent Blinn's highlight falls off over a larger area than Phong's",
-        AtLeast(1.0),
+        Above(1.0),
         lambda: width(50, half=True) / width(50, half=False),
         how="ratio of the angles at which they have fallen to a half, exponent 50",
     ),
@@ -145,7 +145,7 @@ CLAIMS = (
         "PM-blinn-cost",
         "Blinn",
         "Blinn's cosine costs more than Phong's, for its normalisation",
-        AtLeast(1.0),
+        Above(1.0),
         lambda: operations(cosine_of_blinn()) / operations(cosine_of_phong()),
         how="ratio of operations, weighed as by `ratfit bench --backend cost-model`",
     ),

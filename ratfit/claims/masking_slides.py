@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ratfit.brdf import distribution, masking
-from ratfit.claims._agreement import ZERO, AtLeast, AtMost
+from ratfit.claims._agreement import ZERO, AtLeast, AtMost, same
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import over_pairs
 from ratfit.claims._models import LETTERS, V_PRIME, T, U, V, made
@@ -54,6 +54,11 @@ def excess_of_implicit() -> float:
     return float(max(found))
 
 
+def below_surface() -> float:
+    """What the printed G1 of GGX gives for a vector below the surface, v = -1/2, at alpha = 1/2."""
+    return float(values(masking.ggx_as_printed(V, ALPHA), {V: -0.5, ALPHA: 0.5}))
+
+
 CLAIMS = (
     Claim(
         "DP-G-extremes",
@@ -69,12 +74,13 @@ CLAIMS = (
         "the rational fraction is a very accurate approximation of Beckmann's G1",
         AtMost(0.005),
         lambda: apart(masking.beckmann_rational_as_printed(V, ALPHA), masking.beckmann(V, ALPHA), ALPHA, ROUGHNESSES),
-        how="greatest difference, at four roughnesses; very accurate is taken as within 0.005",
+        how="greatest difference, at four roughnesses",
+        word="very accurate",
     ),
     Claim(
         "DP-G1-share",
         "G term",
-        "G1 is a share: at most 1",
+        "(implied) G1 is a share: at most 1",
         AtMost(0.0),
         lambda: (
             max(
@@ -109,11 +115,12 @@ CLAIMS = (
                 lambda: max(off_from_area(masking.phong_as_printed, distribution.phong, n) for n in (20.0, 50.0)),
             ),
         ),
+        word="serves",
     ),
     Claim(
         "DP-G1-ggx",
         "G term",
-        "2/(1 + sqrt(1 + alpha^2 tan^2)) is the G1 of GGX",
+        "above the surface, 2/(1 + sqrt(1 + alpha^2 tan^2)) is the G1 of GGX",
         ZERO,
         lambda: max(off_from_area(masking.ggx, distribution.ggx, alpha) for alpha in (0.5, 1.0)),
         how="difference to the share that makes the visible facets add up to v, by quadrature",
@@ -134,7 +141,7 @@ CLAIMS = (
         "G term",
         "the formulas of G1 are for an arbitrary vector, so for one below the surface too, which sees no facet",
         0,
-        lambda: float(values(masking.ggx_as_printed(V, ALPHA), {V: -0.5, ALPHA: 0.5})),
+        below_surface,
         how="GGX at v.N = -1/2, alpha = 1/2",
         instead=Reading(
             "the printed formulas hold above the surface and need a 0 below it",
@@ -209,9 +216,14 @@ CLAIMS = (
         "PM-G-ggx",
         "Cook-Torrance, geometric term",
         "GGX's helper function in (1 - c^2)/c^2 is GGX's G1",
-        lambda: masking.ggx(V, ALPHA),
-        lambda: masking.ggx_as_printed(V, ALPHA),
-        how="above the horizon",
+        True,
+        lambda: same(masking.ggx(V, ALPHA), masking.ggx_as_printed(V, ALPHA)) and below_surface() == 0,
+        readings=(
+            Reading(
+                "above the surface, where the two are equal at 50 digits; below it G1 is 0 and the function is not",
+                lambda: same(masking.ggx(V, ALPHA), masking.ggx_as_printed(V, ALPHA)) and below_surface() > 0,
+            ),
+        ),
     ),
     Claim(
         "SM-G",

@@ -172,6 +172,7 @@ CLAIMS = (
         AtLeast(10.0),
         growth_of_taylor_error,
         how="its worst error on [1/2, 1] over that on [0, 1/2], to degree 4: the least of seven functions",
+        word="only near",
     ),
     Claim(
         "S-4-integral",

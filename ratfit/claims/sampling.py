@@ -16,10 +16,21 @@ Sample = Callable[[sp.Expr, sp.Expr], sp.Expr]
 
 UNIFORM = tuple(sp.Rational(k, 16) for k in range(1, 16))
 
+FINER = 4
+"""How many times the places around the worst are taken a quarter as far apart."""
+
 
 def off_uniform(sample: Sample, distribution: Sample, p: sp.Expr) -> float:
     """How far a distribution function of its own samples is from the uniform numbers they are made of: 0 if right."""
-    return max(abs(float(sp.N(distribution(sample(b, p), p) - b, 20))) for b in UNIFORM)
+
+    def off(b: sp.Expr) -> float:
+        return abs(float(sp.N(distribution(sample(b, p), p) - b, 20)))
+
+    worst, step = max(UNIFORM, key=off), sp.Rational(1, 16)
+    for _ in range(FINER):  # nearer and nearer to the greatest, between its neighbours
+        step /= 4
+        worst = max((worst + k * step for k in range(-3, 4)), key=off)
+    return off(worst)
 
 
 def amplitude(b: sp.Expr, p: sp.Expr) -> sp.Expr:

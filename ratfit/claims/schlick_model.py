@@ -61,6 +61,11 @@ def greatest(reflectance: sp.Expr) -> float:
     return max(albedo(reflectance, view, r=r, p=1.0) for view in GRAZING for r in (0.2, 0.5, 1.0))
 
 
+def is_greatest_at_one(reflectance: sp.Expr) -> bool:
+    """Whether that is at the lowest of the angles and r = 1."""
+    return albedo(reflectance, GRAZING[0], r=1.0, p=1.0) == greatest(reflectance)
+
+
 def reemitted(view: float) -> float:
     """The share that the second term of Eq. 30 adds, times 2 v."""
     return 2 * view * albedo((1 - MASKED) / (4 * sp.pi * V * V_PRIME), view, r=0.5)
@@ -104,8 +109,8 @@ CLAIMS = (
         lambda: greatest(EQ_25),
         instead=Reading(
             "at normal incidence it does; towards the horizon what it reflects grows beyond all bounds (the found "
-            "number is at v = 0.02)",
-            lambda: all(albedo(EQ_25, 1.0, r=r, p=1.0) <= 1 for r in (0.2, 0.5, 1.0)),
+            "number is at v = 0.02, r = p = 1)",
+            lambda: all(albedo(EQ_25, 1.0, r=r, p=1.0) <= 1 for r in (0.2, 0.5, 1.0)) and is_greatest_at_one(EQ_25),
         ),
     ),
     Claim(
@@ -124,8 +129,8 @@ CLAIMS = (
         lambda: greatest(EQ_30),
         instead=Reading(
             "the re-emitted share (1 - G G')/(4 pi v v') grows like 1/(2 v) towards the horizon: the found number is "
-            "at v = 0.02",
-            lambda: abs(reemitted(0.01) - 1) < 0.02,
+            "at v = 0.02, r = p = 1",
+            lambda: abs(reemitted(0.01) - 1) < 0.02 and is_greatest_at_one(EQ_30),
         ),
     ),
     Claim(

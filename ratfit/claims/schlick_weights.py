@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ratfit.brdf import fresnel
-from ratfit.claims._agreement import AtLeast
+from ratfit.claims._agreement import Above
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._models import V_PRIME, T, U, V, W, named
 from ratfit.claims.schlick_model import C_SECOND, C, R
@@ -73,7 +73,7 @@ CLAIMS = (
         "S-25-lambert",
         "Section 5.1",
         "no facets make Eq. 25 Lambert's model, even with constant Z, because of v v' in its denominator",
-        AtLeast(2.0),
+        Above(1.0),
         growth,
         how="its value at v = v' = 1/4 over that at v = v' = 1, between mirror directions, so t = 1, for any Z and A; "
         "a constant would give 1",

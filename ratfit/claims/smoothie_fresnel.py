@@ -8,7 +8,7 @@ from typing import Any
 import sympy as sp
 
 from ratfit.brdf import fresnel
-from ratfit.claims._agreement import AtLeast, AtMost, Near
+from ratfit.claims._agreement import Above, AtLeast, AtMost, Near
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import over_pairs
 from ratfit.claims._models import V_PRIME, V
@@ -124,7 +124,7 @@ CLAIMS = (
         "SM-F-gaussian-tail",
         "Fresnel term",
         "exp(-6x) does not fall to 0 at x = 1, where the power does",
-        AtLeast(0.002),
+        Above(0.0, 0.001),
         lambda: GAUSSIAN.subs(U, 1) - POWER.subs(U, 1),
         how="exp(-6)",
     ),
@@ -135,6 +135,7 @@ CLAIMS = (
         AtMost(0.2),
         lambda: greatest_mean_height(0.2),
         how="the greatest mean of the cosines N.L and N.V where L.H is at most 0.2, over pairs of directions",
+        word="extremely grazing",
     ),
     Claim(
         "SM-F-environment",
@@ -143,6 +144,7 @@ CLAIMS = (
         AtLeast(0.75),
         share_nearer_to_zero,
         how="the share of pairs of directions for which it is",
+        word="much closer",
     ),
     Claim(
         "SM-F-shapes",
@@ -199,5 +201,6 @@ CLAIMS = (
         AtLeast(5.0),
         lambda: error_below(0.2, True) / error_below(0.2, False),
         how="its greatest error there over its greatest error elsewhere",
+        word="far",
     ),
 )

@@ -6,7 +6,7 @@ import sympy as sp
 
 from ratfit.brdf import distribution, masking, roughness
 from ratfit.claims._agreement import ZERO, same
-from ratfit.claims._claim import Claim
+from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import ends, over_pairs
 from ratfit.claims._models import T, U
 from ratfit.claims.masking import ALPHA, off_from_area
@@ -58,8 +58,14 @@ CLAIMS = (
         "Previous work",
         "GGX is the model of Trowbridge and Reitz that Blinn gives",
         True,
-        lambda: same(of_blinn(T, ALPHA), distribution.ggx(T, ALPHA) * sp.pi * ALPHA**2),
-        how="at 50 digits, but for the constant pi alpha^2",
+        lambda: same(of_blinn(T, ALPHA), distribution.ggx(T, ALPHA)),
+        how="at 50 digits",
+        readings=(
+            Reading(
+                "but for the constant pi alpha^2: Blinn's has the peak 1, GGX the integral 1",
+                lambda: same(of_blinn(T, ALPHA), distribution.ggx(T, ALPHA) * sp.pi * ALPHA**2),
+            ),
+        ),
     ),
     Claim(
         "SM-approximate",

@@ -46,6 +46,7 @@ CLAIMS = (
         (AtLeast(100), AtLeast(100)),
         lambda: tuple(map(between_tones, TABLES)),
         how="how many more values there are over pairs of directions than with thresholds",
+        word="gradients",
     ),
     Claim(
         "PM-toon-speed",

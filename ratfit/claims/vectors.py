@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ratfit.claims._agreement import ZERO, AtLeast
+from ratfit.claims._agreement import ZERO, Above, AtLeast
 from ratfit.claims._claim import Claim, Reading
 from ratfit.claims._directions import over_pairs
 from ratfit.claims._models import LETTERS, V_PRIME, T, U, V, named
@@ -123,7 +123,7 @@ CLAIMS = (
         "PM-oren-normalize",
         "Oren-Nayar",
         "the projections of light and view onto the surface can be normalised",
-        AtLeast(1e-6),
+        Above(0.0, 1e-6),
         projected_at_normal,
         instead=Reading(
             "not where one of them is the normal: its projection has no length; the term with B is 0 there, as "

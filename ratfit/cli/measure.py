@@ -13,7 +13,7 @@ import click
 
 from ratfit._fit import Fit
 from ratfit._inline import settings_of
-from ratfit._parse import RatfitError
+from ratfit._parse import RatfitError, shortened
 from ratfit.cli.derive import rendered
 from ratfit.cli.options import (
     EXPRESSION_HELP,
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
     from ratfit.report.rows import Book, Planned
 
 SAMPLES = 1_000_000
+
+TITLE = 36
+"""Characters of what is measured, in the line that shows how far it is."""
 
 BACKEND_HELP = """Time there alone (may be repeated): jax-cpu, jax-gpu, numpy, c-scalar, c-fast, cost-model; or none,
 for the errors alone. Left out: all that this machine has."""
@@ -188,12 +191,20 @@ def _planned(found: list[Job], about: dict[str, Any], options: dict[str, Any], b
     sampling = "exhaustive" if options["exhaustive"] else options["sampling"] or "uniform"
     check_protocol(sampling, samples, options["seed"], options["dtype"])
     how, backends = Measuring(samples, options["seed"], sampling, options["dtype"]), _backends(options["backends"])
-    titles = [f"{number}/{len(found)} {job.name} {dict(job.parameters)}" for number, job in enumerate(found, 1)]
+    titles = [f"{number}/{len(found)} {_title(job)}" for number, job in enumerate(found, 1)]
     measurements = [
         Measurement(job, how, backends if is_timed(job) else (), title, about)
         for job, title in zip(found, titles, strict=True)
     ]
     return plan(measurements, book)
+
+
+def _title(job: Job) -> str:
+    """What is measured, short enough for how far it is to stand beside it on a line of a terminal."""
+    from ratfit._setting import RANDOM
+
+    at = [f"{name}={value}" for name, value in job.parameters.items() if value != RANDOM]
+    return shortened(" ".join([job.name, *at]), TITLE)
 
 
 def _jobs(fit: Fit, shown: Card | None, given: dict[str, str], options: dict[str, Any]) -> list[Job]:

@@ -128,3 +128,12 @@ def test_what_is_no_model_or_no_measurement_of_one_is_refused(words, says, run):
     assert code == 2
     assert says in err
     assert len(err.strip().splitlines()) == 1
+
+
+def test_the_line_of_progress_has_room_for_the_bar():
+    """What is measured is cut, and says no letter that is drawn at random."""
+    from ratfit._bench import model_jobs
+    from ratfit.cli.measure import TITLE, _title
+
+    for job in model_jobs("cook-torrance", {"alpha": 0.1}):
+        assert job.name[:20] in _title(job) and len(_title(job)) <= TITLE and "random" not in _title(job)

@@ -41,7 +41,9 @@ def check_text(check: Check) -> str:
     about = [line for law in check.laws for line in _about(law)]
     lines += ["", *about] if about else []
     lines += ["", *(f"  {line}" for line in _albedo_lines(check))]
-    shown, bright = (_place(each) or "no parameters" for each in (check.setting, check.brightest.setting))
+    azimuth = {"view's azimuth": math.degrees(check.brightest.azimuth)} if check.brightest.azimuth else {}
+    brightest = {**azimuth, **check.brightest.setting}
+    shown, bright = (_place(each) or "no parameters" for each in (check.setting, brightest))
     lines += ["", *_wrapped("albedo", f"at {shown}", 22), *_wrapped("brightest setting", f"at {bright}", 22)]
     return "\n".join(lines)
 
@@ -92,7 +94,12 @@ def models_json(models: Mapping[str, Model]) -> str:
 
 
 def _numbers(law: Law) -> list[str]:
-    return ["" if number is None else f"{number:.4g}" for number in (law.found, law.bound)]
+    """The number found and its bound, in as many digits as it takes to tell them apart where the law does not hold."""
+    for digits in (4, 7, 10, 16):
+        texts = ["" if number is None else f"{number:.{digits}g}" for number in (law.found, law.bound)]
+        if law.verdict not in (FAILS, UNDECIDED) or len(set(texts)) == 2:
+            break
+    return texts
 
 
 def _measured(law: Law) -> str:

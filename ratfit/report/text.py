@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -124,12 +125,12 @@ def _cost_text(fit: Fit) -> str:
 
 
 def _card_lines(fit: Fit, card: Card) -> list[str]:
-    if not card.printed:
-        return []
-    lines = ["", f"  published   {card.printed}", f"              {card.source}, {card.place}"]
-    if fit.expression is not None:
-        lines.append(f"              {agreement(fit, card)}")
-    return lines + ([f"  note        {card.note}"] if card.note else [])
+    lines = [""] if card.printed or card.note else []
+    if card.printed:
+        lines += [f"  published   {card.printed}", f"              {card.source}, {card.place}"]
+        lines += [f"              {agreement(fit, card)}"] if fit.expression is not None else []
+    noted = textwrap.wrap(card.note, 100)
+    return lines + [f"  {'note' if k == 0 else '':10}  {line}" for k, line in enumerate(noted)]
 
 
 def agreement(fit: Fit, card: Card) -> str:

@@ -40,18 +40,21 @@ class Layer:
         return iter((self.c, self.r, self.p))
 
 
+Formula = Callable[[Layer, bool], sp.Expr]
+
+
 @dataclass(frozen=True)
 class Directional:
-    """A directional factor, right and as printed, the least r it takes, and the share of a mirror that goes with it.
+    """A directional factor, the least r it takes, and the share of a mirror that goes with it.
 
-    The formulas are functions of a layer and of whether the A in print is taken.
+    The formula is a function of a layer and of whether the A in print is taken; for what is divided twice see `twice`.
     """
 
-    formula: Callable[[Layer, bool], sp.Expr]
-    printed: Callable[[Layer, bool], sp.Expr]
+    formula: Formula
     source: str
     least: sp.Expr
     mirror: Callable[[sp.Expr], sp.Expr]
+    is_divided_twice: bool = False
 
 
 def layer(mark: str, least: sp.Expr) -> Layer:
@@ -157,7 +160,7 @@ def _with_obstructed(facets: Lobe, r: sp.Expr, weight: sp.Expr) -> sp.Expr:
     return whole / (sp.pi * SEEN * LIT * both_visible(r) * facets.below)
 
 
-def twice(right: Callable[[Layer, bool], sp.Expr]) -> Callable[[Layer, bool], sp.Expr]:
+def twice(right: Formula) -> Formula:
     """Eq. 32 to the letter, its B being "given by" Eq. 25 or 30: what is not a/pi is over 4 pi v v' once more."""
 
     def formula(layer: Layer, printed: bool) -> sp.Expr:
@@ -169,10 +172,10 @@ def twice(right: Callable[[Layer, bool], sp.Expr]) -> Callable[[Layer, bool], sp
 
 
 DIRECTIONAL: Mapping[str, Directional] = {
-    "facets": Directional(facets, facets, "Eq. 25", SMALLEST, no_mirror),
-    "reemitted": Directional(reemitted, reemitted, "Eq. 30", SMALLEST, no_mirror),
+    "facets": Directional(facets, "Eq. 25", SMALLEST, no_mirror),
+    "reemitted": Directional(reemitted, "Eq. 30", SMALLEST, no_mirror),
     "continuum-of-facets": Directional(
-        continuum_of_facets, twice(continuum_of_facets), "Eqs. 25, 32, 33", sp.S.Zero, mirror
+        continuum_of_facets, "Eqs. 25, 32, 33", sp.S.Zero, mirror, is_divided_twice=True
     ),
-    "continuum": Directional(continuum, twice(continuum), "Eqs. 30, 32, 33", sp.S.Zero, mirror),
+    "continuum": Directional(continuum, "Eqs. 30, 32, 33", sp.S.Zero, mirror, is_divided_twice=True),
 }

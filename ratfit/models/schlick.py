@@ -19,7 +19,7 @@ import sympy as sp
 from ratfit._parse import RatfitError, nearest
 from ratfit.brdf import fresnel
 from ratfit.models._model import Model
-from ratfit.models._schlick import DIRECTIONAL, distributed, layer
+from ratfit.models._schlick import DIRECTIONAL, distributed, layer, twice
 from ratfit.models.directions import U, V
 
 DEFAULTS = ((0.9, 0.2, 1.0), (0.4, 0.9, 1.0))
@@ -58,8 +58,8 @@ def schlick(
     s, where = SPECTRAL[spectral]
     factor = DIRECTIONAL[directional]
     materials = [layer(mark, factor.least) for mark in ("", "_prime")[:layers]]
-    formula = factor.printed if printed else factor.formula
-    wrong = "A" if factor.printed is factor.formula else "A, Eq. 32"
+    formula = twice(factor.formula) if printed and factor.is_divided_twice else factor.formula
+    wrong = "A, Eq. 32" if factor.is_divided_twice else "A"
     title = f"Schlick's {'one layer' if layers == 1 else 'two layers'}: {spectral}, {directional}"
     parameters = tuple(p for material in materials for p in material)
     return Model(

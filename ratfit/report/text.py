@@ -125,12 +125,18 @@ def _cost_text(fit: Fit) -> str:
 
 
 def _card_lines(fit: Fit, card: Card) -> list[str]:
-    lines = [""] if card.printed or card.note else []
-    if card.printed:
-        lines += [f"  published   {card.printed}", f"              {card.source}, {card.place}"]
-        lines += [f"              {agreement(fit, card)}"] if fit.expression is not None else []
+    compared = agreement(fit, card) if card.printed and fit.expression is not None else ""
+    lines = _published(card, compared) if card.printed or card.note else []
+    return ["", *(f"  {line}" for line in lines)] if lines else []
+
+
+def _published(card: Card, compared: str = "") -> list[str]:
+    """What was published of a card, where, how it compares, and what is to be noted."""
+    where = f"{card.source}, {card.place}"
+    told = [f"published   {card.printed}", f"{'':12}{where}"] if card.printed else [f"source      {where}"]
+    told += [f"{'':12}{compared}"] if compared else []
     noted = textwrap.wrap(card.note, 100)
-    return lines + [f"  {'note' if k == 0 else '':10}  {line}" for k, line in enumerate(noted)]
+    return told + [f"{'note' if k == 0 else '':12}{line}" for k, line in enumerate(noted)]
 
 
 def agreement(fit: Fit, card: Card) -> str:
@@ -179,9 +185,7 @@ def aligned(table: Sequence[Sequence[str]]) -> list[str]:
 
 def card_text(card: Card) -> str:
     """One card: the problem as it is understood, and what was published."""
-    lines = [f"{card.name}: {card.title}", "", problem_text(card.problem), "", f"published   {card.printed}"]
-    lines.append(f"            {card.source}, {card.place}")
-    return "\n".join(lines + ([f"note        {card.note}"] if card.note else []))
+    return "\n".join([f"{card.name}: {card.title}", "", problem_text(card.problem), "", *_published(card)])
 
 
 def problem_text(problem: Problem) -> str:
